@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "AllocationCount.h"
-
 #include <atomic>
 #include <cstdlib>
 #include <new>
@@ -35,7 +33,13 @@ void operator delete(void* memory, std::size_t) noexcept
     std::free(memory);
 }
 
-std::size_t osgGpuAnimation::allocationCount()
+namespace osgGpuAnimation
+{
+
+/// The number of calls of operator new in this test program so far.
+std::size_t allocationCount()
 {
     return allocations;
 }
+
+} // namespace osgGpuAnimation

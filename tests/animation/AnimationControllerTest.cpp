@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/StateMachine.h>
 
-#include "AllocationCount.h"
-#include <osgGpuAnimation/authoring/ClipBuilder.h>
+#include "support/ClipSets.h"
+#include "support/GaitSet.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
-#include <random>
 
 namespace osgGpuAnimation
 {
@@ -25,12 +24,9 @@ constexpr std::size_t instant = 1; // one keyframe at 0
 
 std::shared_ptr<const AnimationSet> makeSet()
 {
-    const Skeleton skeleton = Skeleton::create({Joint()}).value();
-    ClipBuilder builder(skeleton, {});
-    EXPECT_TRUE(builder.add(
-        {Channel::Path::Translation, Channel::Interpolation::Linear, 0, {0, 1, 2}, {0, 0, 0, 1, 0, 0, 2, 0, 0}}));
-    std::vector<Clip> clips{builder.build("Walk"), builder.build("Instant")};
-    return AnimationSet::create({skeleton, {}, {}, {}, clips}).value();
+    const Channel slide{
+        Channel::Path::Translation, Channel::Interpolation::Linear, 0, {0, 1, 2}, {0, 0, 0, 1, 0, 0, 2, 0, 0}};
+    return setOf(oneJoint(), {clipOf(oneJoint(), {slide}, "Walk"), clipOf(oneJoint(), {}, "Instant")});
 }
 
 /// The displayed keyframe of the walk plus alpha: 1.25 is between the second and the third keyframe.
@@ -41,7 +37,7 @@ double shown(const AnimationController& controller)
            static_cast<double>(sample.alpha);
 }
 
-TEST(AnimationControllerTest, LoopModesAtTheirEnds)
+TEST(AnimationControllerTest, loopModesAtTheirEnds)
 {
     struct Case
     {
@@ -53,6 +49,7 @@ TEST(AnimationControllerTest, LoopModesAtTheirEnds)
         double shown; ///< keyframe plus alpha
         State state;
     };
+    const double nextToEnd = std::nextafter(2.0, 0.0);
     const Case cases[] = {
         {"once: underway", LoopMode::Once, 1, {0.5}, 0.5, 0.5, State::Playing},
         {"once: at its end exactly", LoopMode::Once, 1, {1, 1}, 2, 2, State::Ended},
@@ -67,9 +64,12 @@ TEST(AnimationControllerTest, LoopModesAtTheirEnds)
         {"loop: at its end the first frame", LoopMode::Loop, 1, {2}, 0, 0, State::Playing},
         {"loop: just beyond", LoopMode::Loop, 1, {2.25}, 0.25, 0.25, State::Playing},
         {"loop: several rounds", LoopMode::Loop, 1, {11.5}, 1.5, 1.5, State::Playing},
+        {"loop: a huge step", LoopMode::Loop, 1e10, {1e300, 0.25e-10}, 0.25, 0.25, State::Playing},
+        {"loop: a tiny step", LoopMode::Loop, 1, {0.25, 1e-320}, 0.25, 0.25, State::Playing},
         {"loop: backwards from its end", LoopMode::Loop, -1, {0.5}, 1.5, 1.5, State::Playing},
         {"loop: backwards to 0", LoopMode::Loop, -1, {2}, 0, 0, State::Playing},
         {"loop: backwards below 0", LoopMode::Loop, -1, {2.25}, 1.75, 1.75, State::Playing},
+        {"loop: backwards from next to 0", LoopMode::Loop, 1, {-1e-30}, nextToEnd, 2.0 - 0x1p-24, State::Playing},
         {"loop: backwards several rounds", LoopMode::Loop, -1, {9.25}, 0.75, 0.75, State::Playing},
         {"ping-pong: at its end", LoopMode::PingPong, 1, {2}, 2, 2, State::Playing},
         {"ping-pong: after its end", LoopMode::PingPong, 1, {2, 0.5}, 1.5, 1.5, State::Playing},
@@ -100,7 +100,7 @@ TEST(AnimationControllerTest, LoopModesAtTheirEnds)
     }
 }
 
-TEST(AnimationControllerTest, AClipOfNoLengthEndsOnceAndElseStandsPlaying)
+TEST(AnimationControllerTest, aClipOfNoLengthEndsOnceAndElseStandsPlaying)
 {
     const auto set = makeSet();
     for (double speed : {1.0, -1.0, 0.0})
@@ -117,36 +117,7 @@ TEST(AnimationControllerTest, AClipOfNoLengthEndsOnceAndElseStandsPlaying)
         }
 }
 
-TEST(AnimationControllerTest, AnyStepLeavesATimeWithinTheClip)
-{
-    const auto set = makeSet();
-    std::mt19937 random(7);
-    const double steps[] = {1e300, -1e300, 1e-320, -1e-320, 1e17, 2.0, -2.0, 0.1, -0.1, 1e-17, -1e-17};
-    const double speeds[] = {1.0, -1.0, 1e300, -1e300, 1e-300, 0.3};
-    for (LoopMode mode : {LoopMode::Loop, LoopMode::PingPong})
-    {
-        AnimationController controller(set);
-        controller.setLoopMode(mode);
-        ASSERT_TRUE(controller.play(walk));
-        for (int i = 0; i < 10000; ++i)
-        {
-            ASSERT_TRUE(controller.setSpeed(speeds[random() % std::size(speeds)]));
-            controller.advance(steps[random() % std::size(steps)]);
-            ASSERT_GE(controller.time(), 0.0);
-            ASSERT_LE(controller.time(), mode == LoopMode::Loop ? std::nextafter(2.0, 0.0) : 2.0);
-        }
-    }
-}
-
-TEST(AnimationControllerTest, BackwardsFromNextToZeroShowsTheEndNotTheBeginning)
-{
-    AnimationController controller(makeSet());
-    ASSERT_TRUE(controller.play(walk));
-    controller.advance(-1e-30);
-    EXPECT_GT(controller.time(), 1.99);
-}
-
-TEST(AnimationControllerTest, StatesFollowEachOther)
+TEST(AnimationControllerTest, statesFollowEachOther)
 {
     AnimationController controller(makeSet());
     const std::uint32_t rest = 0;
@@ -182,7 +153,7 @@ TEST(AnimationControllerTest, StatesFollowEachOther)
     EXPECT_EQ(controller.state(), State::Stopped);
 }
 
-TEST(AnimationControllerTest, SeekingIsClampedAndWakesWhatHasEnded)
+TEST(AnimationControllerTest, seekingIsClampedAndWakesWhatHasEnded)
 {
     struct Case
     {
@@ -216,7 +187,7 @@ TEST(AnimationControllerTest, SeekingIsClampedAndWakesWhatHasEnded)
     }
 }
 
-TEST(AnimationControllerTest, ALoopSoughtToItsEndShowsItsFirstFrame)
+TEST(AnimationControllerTest, aLoopSoughtToItsEndShowsItsFirstFrame)
 {
     AnimationController controller(makeSet());
     ASSERT_TRUE(controller.play(walk));
@@ -227,7 +198,7 @@ TEST(AnimationControllerTest, ALoopSoughtToItsEndShowsItsFirstFrame)
     EXPECT_EQ(shown(controller), 2.0);
 }
 
-TEST(AnimationControllerTest, ANewLoopModeRunsForwardsFromTheSameTime)
+TEST(AnimationControllerTest, aNewLoopModeRunsForwardsFromTheSameTime)
 {
     AnimationController controller(makeSet());
     controller.setLoopMode(LoopMode::PingPong);
@@ -243,7 +214,7 @@ TEST(AnimationControllerTest, ANewLoopModeRunsForwardsFromTheSameTime)
     EXPECT_DOUBLE_EQ(controller.time(), 1.875);
 }
 
-TEST(AnimationControllerTest, RefusesWhatItCannotDoAndStaysAsItWas)
+TEST(AnimationControllerTest, refusesWhatItCannotDoAndStaysAsItWas)
 {
     AnimationController controller(makeSet());
     ASSERT_TRUE(controller.play(walk));
@@ -261,42 +232,28 @@ TEST(AnimationControllerTest, RefusesWhatItCannotDoAndStaysAsItWas)
     EXPECT_EQ(shown(controller), 0.5);
 }
 
-TEST(AnimationControllerTest, CopiesGoTheirOwnWay)
+// A null set counts as one without joints and clips.
+TEST(NullSetTest, aControllerAndAStateMachineAnswer)
 {
-    AnimationController first(makeSet());
-    ASSERT_TRUE(first.play(walk));
-    AnimationController second = first;
-    first.advance(0.5);
-    second.advance(1.5);
-    EXPECT_EQ(shown(first), 0.5);
-    EXPECT_EQ(shown(second), 1.5);
-    EXPECT_EQ(first.sharedSet(), second.sharedSet());
-}
-
-TEST(AnimationControllerTest, SplineClipsAreMarked)
-{
-    const Skeleton skeleton = Skeleton::create({Joint()}).value();
-    ClipBuilder builder(skeleton, {});
-    ASSERT_TRUE(builder.add(
-        {Channel::Path::Translation, Channel::Interpolation::CubicSpline, 0, {0, 1, 2}, std::vector<double>(27, 1.0)}));
-    AnimationController controller(AnimationSet::create({skeleton, {}, {}, {}, {builder.build("s")}}).value());
-    ASSERT_TRUE(controller.play(0));
-    const BlendSample& sample = controller.advance(1.25).samples[0];
-    EXPECT_EQ(sample.control, 1u);
-    EXPECT_EQ(sample.keyframe, 2u) << "the second of the clip, after the rest pose";
-    EXPECT_EQ(sample.alpha, 0.25f);
-    controller.stop();
-    EXPECT_EQ(controller.instruction().samples[0].control, 0u);
-}
-
-TEST(AnimationControllerTest, AdvancingDoesNotAllocate)
-{
-    AnimationController controller(makeSet());
-    ASSERT_TRUE(controller.play(walk));
-    const std::size_t before = allocationCount();
-    for (int i = 0; i < 1000; ++i)
-        controller.advance(0.013);
-    EXPECT_EQ(allocationCount(), before);
+    AnimationController playing(makeGaitSet());
+    ASSERT_TRUE(playing.play("Walk"));
+    for (AnimationController controller : {AnimationController(nullptr), AnimationController(nullptr, playing)})
+    {
+        EXPECT_EQ(controller.set().skeleton().jointCount(), 0u);
+        EXPECT_NE(controller.sharedSet(), nullptr);
+        const Result<void> played = controller.play("Walk");
+        ASSERT_FALSE(played);
+        EXPECT_EQ(played.error().message, "there is no clip \"Walk\"; the clips are none");
+        EXPECT_EQ(controller.advance(0.5).sampleCount, 1u);
+        EXPECT_TRUE(controller.isPlainLoop());
+    }
+    StateMachine machine(nullptr);
+    EXPECT_EQ(machine.state(), "");
+    EXPECT_FALSE(machine.set("speed", 1.0));
+    EXPECT_FALSE(machine.fire("jump"));
+    for (int step = 0; step < 3; ++step)
+        EXPECT_FALSE(machine.update(playing, 0.5));
+    EXPECT_TRUE(playing.isPlaying());
 }
 
 } // namespace

@@ -1,16 +1,23 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/AnimationSet.h>
-
-#include "support/RandomCharacter.h"
 #include <osgGpuAnimation/animation/bounds/JointRange.h>
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/animation/Skeleton.h>
 #include <osgGpuAnimation/authoring/ClipBuilder.h>
+
+#include "support/ClipSets.h"
+#include "support/RandomCharacter.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace osgGpuAnimation
 {
@@ -44,7 +51,7 @@ std::shared_ptr<const AnimationSet> make(AnimationParts parts)
     return made.value();
 }
 
-TEST(AnimationSetTest, OneSkinHasOneEntryAJointInLevelOrder)
+TEST(AnimationSetTest, oneSkinHasOneEntryAJointInLevelOrder)
 {
     const auto set = make({threeJoints(), {{"skin", {2, 0}, {moved(3), moved(1)}}}, {}, {}, {}});
     ASSERT_EQ(set->paletteSize(), 3u);
@@ -62,7 +69,7 @@ TEST(AnimationSetTest, OneSkinHasOneEntryAJointInLevelOrder)
     EXPECT_EQ(set->entryOfRigidJoint(0), -1);
 }
 
-TEST(AnimationSetTest, FurtherBindsAreStaticChildrenOfTheMainEntry)
+TEST(AnimationSetTest, furtherBindsAreStaticChildrenOfTheMainEntry)
 {
     const auto set = make({threeJoints(),
                            {{"a", {0, 1}, {moved(1), moved(2)}},
@@ -87,7 +94,7 @@ TEST(AnimationSetTest, FurtherBindsAreStaticChildrenOfTheMainEntry)
     EXPECT_TRUE(set->palette()[static_cast<std::size_t>(set->entryOfRigidJoint(0))].inverseBind.isIdentity());
 }
 
-TEST(AnimationSetTest, GarmentsTakeEntriesAfterAllOthers)
+TEST(AnimationSetTest, garmentsTakeEntriesAfterAllOthers)
 {
     const auto set = make({threeJoints(), {{"body", {0, 1}, {moved(1), moved(2)}}}, {2}, {}, {}});
     const std::vector<Skin> coat{{"coat", {2, 0}, {moved(7), moved(8)}}};
@@ -120,7 +127,7 @@ TEST(AnimationSetTest, GarmentsTakeEntriesAfterAllOthers)
     EXPECT_EQ(wrong.error().message, "garment 0 \"hat\": its joint 0 is 3, but there are 3");
 }
 
-TEST(AnimationSetTest, AMatrixThatCannotBeUndoneIsNoMainBind)
+TEST(AnimationSetTest, aMatrixThatCannotBeUndoneIsNoMainBind)
 {
     AffineMatrix flat;
     flat.rows[1] = glm::vec4(0);
@@ -154,7 +161,7 @@ TEST(AnimationSetTest, AMatrixThatCannotBeUndoneIsNoMainBind)
     }
 }
 
-TEST(AnimationSetTest, WeightBlocksStandInTheFirstLevel)
+TEST(AnimationSetTest, weightBlocksStandInTheFirstLevel)
 {
     std::vector<MorphWeights> morphs{
         {"none", -1, {}}, {"face", -1, std::vector<float>(25, 0.5f)}, {"hand", -1, {0.25f}}};
@@ -175,15 +182,13 @@ TEST(AnimationSetTest, WeightBlocksStandInTheFirstLevel)
 }
 
 // Clips animate a property as they animate weights, but the GPU does not compute it.
-TEST(AnimationSetTest, PropertiesHaveTracksAndNoEntries)
+TEST(AnimationSetTest, propertiesHaveTracksAndNoEntries)
 {
     const Skeleton skeleton = threeJoints();
     const std::vector<MorphWeights> morphs{
         {"face", 0, {0.5f}}, {"/materials/0/emissiveFactor", -1, {1, 2, 3}}, {"hand", 0, {0.25f}}};
-    ClipBuilder builder(skeleton, morphs);
-    Channel channel{Channel::Path::Weights, Channel::Interpolation::Linear, 1, {0, 1}, {0, 0, 0, 4, 8, 1e9}};
-    ASSERT_TRUE(builder.add(channel));
-    const auto set = make({skeleton, {}, {}, morphs, {builder.build("glow")}});
+    const Channel glow{Channel::Path::Weights, Channel::Interpolation::Linear, 1, {0, 1}, {0, 0, 0, 4, 8, 1e9}};
+    const auto set = setOf(skeleton, {clipOf(skeleton, {glow}, "glow", morphs)}, morphs);
     EXPECT_EQ(set->trackCount(), 3u + 3u);
     EXPECT_EQ(set->entryOfMorph(1), -1);
     EXPECT_EQ(set->paletteSize(), 3u + 2u);
@@ -207,40 +212,7 @@ TEST(AnimationSetTest, PropertiesHaveTracksAndNoEntries)
     EXPECT_EQ(pose.extent()->largestWeight, 0.0) << "nor after a reset";
 }
 
-TEST(AnimationSetTest, EveryPaletteIsInLevelOrderAndWhole)
-{
-    for (unsigned seed = 1; seed <= 30; ++seed)
-    {
-        RandomCharacter character(seed, {});
-        Skin skin;
-        for (int i = 0; i < 12; ++i)
-        {
-            skin.joints.push_back(character.whole(0, 7));
-            skin.inverseBinds.push_back(moved(static_cast<float>(character.whole(0, 2))));
-        }
-        const auto set = make({character.skeleton(), {skin, skin}, {0, 3, 3}, character.morphs, {}});
-        ASSERT_EQ(set->levels().front(), 0u);
-        ASSERT_EQ(set->levels().back(), set->paletteSize());
-        std::vector<std::size_t> levelOf;
-        for (std::size_t l = 0; l < set->levelCount(); ++l)
-            levelOf.resize(set->levels()[l + 1], l);
-        for (std::size_t e = 0; e < set->paletteSize(); ++e)
-        {
-            const PaletteEntry& entry = set->palette()[e];
-            const std::size_t above = entry.parent < 0 ? 0 : levelOf[static_cast<std::size_t>(entry.parent)] + 1;
-            EXPECT_EQ(levelOf[e], above) << "seed " << seed << ", entry " << e;
-        }
-        for (int j = 0; j < 8; ++j)
-        {
-            const PaletteEntry& entry = set->palette()[static_cast<std::size_t>(set->mainEntry(j))];
-            const int parent = set->skeleton().joint(static_cast<std::size_t>(j)).parent;
-            EXPECT_EQ(entry.track, j);
-            EXPECT_EQ(entry.parent, parent < 0 ? -1 : set->mainEntry(parent));
-        }
-    }
-}
-
-TEST(AnimationSetTest, KeyframesAreNumberedFromTheRestPoseOn)
+TEST(AnimationSetTest, keyframesAreNumberedFromTheRestPoseOn)
 {
     RandomCharacter linear(3, {8, false, true, false, 1.0, 1.0});
     const Skeleton skeleton = linear.skeleton();
@@ -253,22 +225,7 @@ TEST(AnimationSetTest, KeyframesAreNumberedFromTheRestPoseOn)
     EXPECT_EQ(set->sampleAt(1, second.duration()).keyframe, set->keyframeCount() - 1);
 }
 
-TEST(AnimationSetTest, MayHaveNoJointsAtAll)
-{
-    const auto set = make({Skeleton::create({}).value(), {}, {}, {}, {}});
-    EXPECT_EQ(set->paletteSize(), 0u);
-    EXPECT_EQ(set->levelCount(), 0u);
-    EXPECT_EQ(set->keyframeCount(), 1u);
-}
-
-TEST(AnimationSetTest, ADeepChainIsBuiltAsWell)
-{
-    RandomCharacter character(1, {20000, false, false, true, 0.1, 1.0});
-    const auto set = make({character.skeleton(), {}, {}, {}, {}});
-    EXPECT_EQ(set->levelCount(), 20000u);
-}
-
-TEST(AnimationSetTest, RefusesPartsThatDoNotFitTogether)
+TEST(AnimationSetTest, refusesPartsThatDoNotFitTogether)
 {
     AffineMatrix notFinite;
     notFinite.rows[0].x = std::numeric_limits<float>::quiet_NaN();
@@ -287,7 +244,9 @@ TEST(AnimationSetTest, RefusesPartsThatDoNotFitTogether)
          "skin 0 \"s\": 2 joints but 1 inverse bind matrices"},
         {{threeJoints(), {{"s", {0}, {notFinite}}}, {}, {}, {}},
          "skin 0 \"s\": its inverse bind matrix 0 is not finite"},
-        {{threeJoints(), {}, {7}, {}, {}}, "rigid joint 7 is not one of 3"},
+        {{threeJoints(), {{"s", {0, 1}, {moved(1), notFinite}}}, {}, {}, {}},
+         "skin 0 \"s\": its inverse bind matrix 1 is not finite"},
+        {{threeJoints(), {}, {2, 3}, {}, {}}, "rigid joint 3 is not one of 3"},
         {{threeJoints(), {}, {}, endless, {}}, "morph 0 \"face\": a default weight is not finite"},
         {{threeJoints(), {}, {}, {}, {foreign}}, "clip 0 \"wave\": 4 tracks, but the set has 3"},
     };
@@ -297,30 +256,24 @@ TEST(AnimationSetTest, RefusesPartsThatDoNotFitTogether)
         ASSERT_FALSE(made) << c.message;
         EXPECT_EQ(made.error().message, c.message);
     }
+    EXPECT_TRUE(AnimationSet::create({threeJoints(), {{"s", {1}, {moved(1), moved(2)}}}, {}, {}, {}})) << "one more";
+    const auto empty = make({Skeleton::create({}).value(), {}, {}, {}, {}});
+    EXPECT_EQ(empty->levelCount(), 0u);
+    std::vector<AffineMatrix> palette(3);
+    Pose::evaluate(*empty, PoseInstruction(), AffineMatrix(), palette);
+    EXPECT_TRUE(palette.empty());
 }
 
-TEST(AnimationSetTest, FindsClipsByNameTheFirstOfSeveral)
+TEST(AnimationSetTest, findsClipsByNameTheFirstOfSeveral)
 {
     const Skeleton skeleton = threeJoints();
-    ClipBuilder builder(skeleton, {});
-    const auto set = make({skeleton, {}, {}, {}, {builder.build("a"), builder.build("b"), builder.build("b")}});
+    const Clip b = clipOf(skeleton, {}, "b");
+    const auto set = setOf(skeleton, {clipOf(skeleton, {}, "a"), b, b});
     EXPECT_EQ(set->findClip("b"), 1);
     EXPECT_EQ(set->findClip("B"), -1);
 }
 
-TEST(AnimationSetTest, ASkinMayHaveMoreMatricesThanJointsAndEachIsChecked)
-{
-    EXPECT_TRUE(AnimationSet::create({threeJoints(), {{"s", {1}, {moved(1), moved(2)}}}, {}, {}, {}}));
-    AffineMatrix bad;
-    bad.rows[2].w = std::numeric_limits<float>::infinity();
-    const auto made = AnimationSet::create({threeJoints(), {{"s", {0, 1}, {moved(1), bad}}}, {}, {}, {}});
-    ASSERT_FALSE(made);
-    EXPECT_EQ(made.error().message, "skin 0 \"s\": its inverse bind matrix 1 is not finite");
-    EXPECT_FALSE(AnimationSet::create({threeJoints(), {}, {3}, {}, {}})) << "one more than the last joint";
-    EXPECT_TRUE(AnimationSet::create({threeJoints(), {}, {2}, {}, {}}));
-}
-
-TEST(AnimationSetTest, DerivedSetsKeepMasksAndWhatWasMeasured)
+TEST(AnimationSetTest, derivedSetsKeepMasksAndWhatWasMeasured)
 {
     const Skeleton skeleton = threeJoints();
     const auto set = make({skeleton, {}, {}, {}, {ClipBuilder(skeleton, {}).build("a")}});
@@ -340,29 +293,233 @@ TEST(AnimationSetTest, DerivedSetsKeepMasksAndWhatWasMeasured)
     EXPECT_FALSE(set->withConstraints(many));
 }
 
-TEST(AnimationSetTest, WeightsBeyondTheFirstBlockCount)
+TEST(AnimationSetTest, weightsBeyondTheFirstBlockCount)
 {
     const Skeleton skeleton = threeJoints();
     std::vector<float> numbers(14);
     for (std::size_t i = 0; i < numbers.size(); ++i)
         numbers[i] = static_cast<float>(i);
     const std::vector<MorphWeights> morphs{{"face", 0, std::vector<float>(14, 0.5f)}, {"/cameras/0", -1, numbers}};
-    ClipBuilder builder(skeleton, morphs);
     Channel channel{Channel::Path::Weights, Channel::Interpolation::CubicSpline, 0, {0, 1}, {}};
-    channel.values = {0, 0.25, 6, -3, 0.75, 0}; // in-tangent, value, out-tangent
+    channel.values = {0, 0.25, -3, -6, 0.75, 0}; // in-tangent, value, out-tangent
     channel.weight = 13;
-    ASSERT_TRUE(builder.add(channel));
-    const auto set = make({skeleton, {}, {}, morphs, {builder.build("a")}});
+    const auto set = setOf(skeleton, {clipOf(skeleton, {channel}, "a", morphs)}, morphs);
     const std::vector<WeightRange> ranges = weightRanges(*set, 0);
     ASSERT_EQ(ranges.size(), 14u);
     EXPECT_EQ(ranges[12].min, 0.5f) << "the default alone";
     EXPECT_EQ(ranges[12].max, 0.5f);
-    EXPECT_NEAR(ranges[13].min, 0.25f, 1e-6f);
-    EXPECT_NEAR(ranges[13].max, 2.25f, 1e-6f) << "a third of the tangents beyond the values";
+    EXPECT_NEAR(ranges[13].min, -0.75f, 1e-6f) << "a third of the tangent beyond the value";
+    EXPECT_NEAR(ranges[13].max, 2.75f, 1e-6f) << "before the second key";
     std::vector<float> shown;
     Pose::properties(*set, PoseInstruction(), shown);
     EXPECT_EQ(shown, numbers);
 }
 
+Joint joint(const char* name, int parent, int sourceNode = -1)
+{
+    return {name, parent, JointTransform(), sourceNode};
+}
+
+TEST(SkeletonTest, sortsByDepthAndKeepsTheOrderWithinALevel)
+{
+    // The children of "b" precede those of "a" in the input; this order is kept.
+    const Result<Skeleton> made = Skeleton::create(
+        {joint("b1", 1, 10), joint("b", 4, 11), joint("a1", 3, 12), joint("a", 4, 13), joint("root", -1, 14)});
+    ASSERT_TRUE(made) << made.error().message;
+    const Skeleton& skeleton = made.value();
+    const char* names[] = {"root", "b", "a", "b1", "a1"};
+    const int parents[] = {-1, 0, 0, 1, 2};
+    const int depths[] = {0, 1, 1, 2, 2};
+    for (std::size_t j = 0; j < 5; ++j)
+    {
+        EXPECT_EQ(skeleton.joint(j).name, names[j]);
+        EXPECT_EQ(skeleton.joint(j).parent, parents[j]);
+        EXPECT_EQ(skeleton.depths()[j], depths[j]);
+    }
+    EXPECT_EQ(skeleton.levelCount(), 3u);
+    EXPECT_EQ(skeleton.jointOfInput(0), 3);
+    EXPECT_EQ(skeleton.jointOfSourceNode(13), 2);
+    EXPECT_EQ(skeleton.jointOfSourceNode(99), -1);
+    EXPECT_EQ(skeleton.findJoint("a1"), 4);
+    EXPECT_EQ(skeleton.findJoint("nobody"), -1);
+}
+
+TEST(SkeletonTest, refusesWhatIsNoForest)
+{
+    Joint notFinite = joint("far", -1);
+    notFinite.rest.scale.y = std::numeric_limits<float>::infinity();
+    struct Case
+    {
+        std::vector<Joint> joints;
+        const char* message;
+    };
+    const Case cases[] = {
+        {{joint("a", 1)}, "joint 0 \"a\": parent 1 is not one of 1 joints"},
+        {{joint("a", -2)}, "joint 0 \"a\": parent -2 is not one of 1 joints"},
+        {{joint("a", 0)}, "joint 0 \"a\": its chain of parents runs in a circle"},
+        {{joint("r", -1), joint("a", 2), joint("b", 1)}, "joint 1 \"a\": its chain of parents runs in a circle"},
+        {{notFinite}, "joint 0 \"far\": its rest transform is not finite"},
+    };
+    for (const Case& c : cases)
+    {
+        const Result<Skeleton> made = Skeleton::create(c.joints);
+        ASSERT_FALSE(made) << c.message;
+        EXPECT_EQ(made.error().message, c.message);
+    }
+}
+
+TEST(SkeletonTest, takesChainsOfAnyDepth)
+{
+    const int count = 20000;
+    std::vector<Joint> joints;
+    for (int j = 0; j < count; ++j)
+        joints.push_back(joint("link", j + 1 < count ? j + 1 : -1)); // the last is the root
+    const Result<Skeleton> made = Skeleton::create(joints);
+    ASSERT_TRUE(made) << made.error().message;
+    EXPECT_EQ(made.value().levelCount(), static_cast<std::size_t>(count));
+    EXPECT_EQ(made.value().jointOfInput(0), count - 1);
+}
+
+TEST(SkeletonTest, restRotationsBecomeUnit)
+{
+    Joint stretched = joint("a", -1);
+    stretched.rest.rotation = {0, 0, 3, 4};
+    Joint without = joint("b", -1);
+    without.rest.rotation = {0, 0, 0, 0};
+    const Result<Skeleton> made = Skeleton::create({stretched, without});
+    ASSERT_TRUE(made);
+    EXPECT_EQ(made.value().joint(0).rest.rotation, glm::vec4(0.0f, 0.0f, 0.6f, 0.8f));
+    EXPECT_EQ(made.value().joint(1).rest.rotation, glm::vec4(0, 0, 0, 1));
+}
+
+TEST(SkeletonTest, ofSeveralTheFirstCountsAndUnusedNumbersAreZero)
+{
+    Joint odd = joint("twin", 0, 7);
+    odd.rest.translation.w = odd.rest.scale.w = 5.0f;
+    const Result<Skeleton> made = Skeleton::create({joint("root", -1, 3), odd, joint("twin", 0, 7)});
+    ASSERT_TRUE(made);
+    EXPECT_EQ(made.value().jointOfSourceNode(7), 1);
+    EXPECT_EQ(made.value().findJoint("twin"), 1);
+    EXPECT_EQ(made.value().joint(1).rest.translation.w, 0.0f);
+    EXPECT_EQ(made.value().joint(1).rest.scale.w, 0.0f);
+}
+
+/// Keyframes at 1, 2, 2, 4: the jump is at 2.
+Clip makeClip()
+{
+    return clipOf(
+        oneJoint(),
+        {{Channel::Path::Translation, Channel::Interpolation::Step, 0, {1, 2, 4}, {0, 0, 0, 1, 1, 1, 1, 1, 1}}});
+}
+
+TEST(ClipTest, locatesATimeBetweenItsKeyframes)
+{
+    const Clip clip = makeClip();
+    ASSERT_EQ(clip.times(), (std::vector<float>{1, 2, 2, 4}));
+    EXPECT_EQ(clip.duration(), 4.0);
+    const double infinite = std::numeric_limits<double>::infinity();
+    struct Case
+    {
+        const char* name;
+        double time;
+        std::size_t keyframe;
+        float alpha;
+    };
+    const Case cases[] = {
+        {"before the first", 0.0, 0, 0.0f},
+        {"long before the first", -infinite, 0, 0.0f},
+        {"at the first", 1.0, 0, 0.0f},
+        {"between", 1.25, 0, 0.25f},
+        {"just before the jump", std::nextafter(2.0, 0.0), 0, 1.0f - 0x1p-24f},
+        {"at the jump the later one holds", 2.0, 2, 0.0f},
+        {"after the jump", 3.0, 2, 0.5f},
+        {"at the last", 4.0, 3, 0.0f},
+        {"after the last", 1e300, 3, 0.0f},
+        {"long after the last", infinite, 3, 0.0f},
+        {"not a number", std::nan(""), 0, 0.0f},
+    };
+    for (const Case& c : cases)
+    {
+        const Clip::Span span = clip.locate(c.time);
+        EXPECT_EQ(span.keyframe, c.keyframe) << c.name;
+        EXPECT_EQ(span.alpha, c.alpha) << c.name;
+    }
+}
+
+/// Keyframes of one joint and one weight block.
+ClipParts partsAt(const std::vector<float>& times, Clip::Form form = Clip::Form::Linear)
+{
+    ClipParts parts{"two", form, 1, 2, times, {}, {}, nullptr, nullptr};
+    parts.data.resize(times.size() * 2 * Clip::transformsPerTrack(form));
+    return parts;
+}
+
+/// Two keyframes, in which one transform is another.
+ClipParts partsWith(std::size_t place, const JointTransform& transform, Clip::Form form = Clip::Form::Linear)
+{
+    ClipParts parts = partsAt({0.0f, 1.0f}, form);
+    parts.data.at(place) = transform;
+    return parts;
+}
+
+/// Two keyframes and a root motion.
+ClipParts partsMoving(std::size_t joint, std::size_t keys, const std::function<void(RootMotionCurve&)>& change = {})
+{
+    ClipParts parts = partsAt({0.0f, 1.0f});
+    auto curve = std::make_shared<RootMotionCurve>();
+    curve->joint = joint;
+    curve->keys.resize(keys);
+    if (change) change(*curve);
+    parts.rootMotion = curve;
+    return parts;
+}
+
+TEST(ClipTest, partsThatCannotBeAreErrorsAndTheEdgesAreAccepted)
+{
+    const float endless = std::numeric_limits<float>::infinity();
+    const double nan = std::nan("");
+    JointTransform zero, wide;
+    zero.rotation = glm::vec4(0.0f);
+    wide.scale.w = endless;
+    ClipParts fiveTransforms = partsAt({0, 1}), marked = partsAt({0, 1});
+    fiveTransforms.data.resize(5);
+    marked.markers.push_back({-0.1, "step"});
+    using Curve = RootMotionCurve;
+    const std::pair<const char*, ClipParts> cases[] = {
+        // an empty message: accepted
+        {"", partsAt({0, 1})},
+        {"it has no keyframes", partsAt({})},
+        {"", partsAt({0, 0})},
+        {"time 2 (0.000000) occurs more than twice", partsAt({0, 0, 0})},
+        {"time 1 (0.500000) is before", partsAt({1, 0.5f})},
+        {"time 0 (-0.500000) is negative", partsAt({-0.5f, 1})},
+        {"time 1 (inf) is negative or not finite", partsAt({0, endless})},
+        {"4 joint transforms are needed, but there are 5", fiveTransforms},
+        {"track 0 at keyframe 1: the rotation has length 0", partsWith(2, zero)},
+        {"", partsWith(3, zero)},                     // weights
+        {"", partsWith(1, zero, Clip::Form::Spline)}, // a tangent
+        {"track 1 at keyframe 1: a number is not finite", partsWith(3, wide)},
+        {"", partsMoving(0, 2)},
+        {"the joint of its root motion does not exist", partsMoving(1, 2)},
+        {"its root motion has 1 keys for 2 keyframes", partsMoving(0, 1)},
+        {"a number of its root motion is not finite", partsMoving(0, 2, [=](Curve& c) { c.keys[1].yaw = nan; })},
+        {"a number of its root motion is not finite",
+         partsMoving(0, 2, [=](Curve& c) { c.keys[1].pivot.out.z = nan; })},
+        {"a number of its root motion is not finite",
+         partsMoving(0, 2, [=](Curve& c) { c.keys[0].displacement.in.y = nan; })},
+        {"a number of its root motion is not finite", partsMoving(0, 2, [](Curve& c) { c.up = glm::dvec3(0.0); })},
+        {"marker \"step\" of clip \"two\": its time", marked},
+    };
+    for (std::size_t i = 0; i < std::size(cases); ++i)
+    {
+        const auto& [expected, parts] = cases[i];
+        const Result<Clip> made = Clip::create(parts);
+        const std::string message = made ? "" : made.error().message;
+        ASSERT_EQ(message.empty(), *expected == '\0') << "case " << i << ": " << message;
+        EXPECT_NE(message.find(expected), std::string::npos) << "case " << i << ": " << message;
+    }
+}
+
 } // namespace
+
 } // namespace osgGpuAnimation

@@ -1,27 +1,23 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/AnimationSet.h>
-#include <osgGpuAnimation/authoring/ClipBuilder.h>
-#include <osgGpuAnimation/authoring/CompactClips.h>
-#include <osgGpuAnimation/authoring/WithRootMotion.h>
-
-#include "support/GaitSet.h"
-#include "support/PoseErrors.h"
-#include "support/RandomSet.h"
 #include <osgGpuAnimation/animation/keyframes/CompactTracks.h>
 #include <osgGpuAnimation/animation/keyframes/PackedKeyframes.h>
 #include <osgGpuAnimation/animation/RootMotion.h>
+#include <osgGpuAnimation/authoring/CompactClips.h>
+#include <osgGpuAnimation/authoring/WithRootMotion.h>
+
+#include "support/ClipSets.h"
+#include "support/PoseErrors.h"
+#include "support/RandomSet.h"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <memory>
-#include <random>
 #include <string>
-#include <type_traits>
 #include <utility>
 
 namespace osgGpuAnimation
@@ -30,11 +26,6 @@ namespace osgGpuAnimation
 namespace
 {
 
-std::shared_ptr<const AnimationSet> setOf(const Skeleton& skeleton, const std::vector<MorphWeights>& morphs, Clip clip)
-{
-    return AnimationSet::create({skeleton, {}, {}, morphs, {std::move(clip)}}).value();
-}
-
 /// A root and a child one unit away.
 Skeleton twoJoints()
 {
@@ -42,6 +33,18 @@ Skeleton twoJoints()
     joints[1].parent = 0;
     joints[1].rest.translation = glm::vec4(1, 0, 0, 0);
     return Skeleton::create(joints).value();
+}
+
+/// A set of two joints with one clip of these channels.
+std::shared_ptr<const AnimationSet> moving(const std::vector<Channel>& channels,
+                                           const std::vector<MorphWeights>& morphs = {})
+{
+    return setOf(twoJoints(), {clipOf(twoJoints(), channels, "clip", morphs)}, morphs);
+}
+
+CompactedSet compacted(const AnimationSet& set, double tolerance)
+{
+    return compactClips(set, cubes(set, 1.0f), {tolerance}).value();
 }
 
 /// The root moves from 0 to `end` in `steps` equal steps.
@@ -79,10 +82,8 @@ TEST(CompactClipsTest, randomSetsStayWithinTheTolerance)
 
 TEST(CompactClipsTest, keyframesThatTheirNeighboursTellAreDropped)
 {
-    ClipBuilder builder(twoJoints(), {});
-    ASSERT_TRUE(builder.add(straightWay(1000, 5.0)));
-    const auto exact = setOf(twoJoints(), {}, builder.build("walk"));
-    const CompactedSet compact = compactClips(*exact, cubes(*exact, 1.0f), {1e-4}).value();
+    const auto exact = moving({straightWay(1000, 5.0)});
+    const CompactedSet compact = compacted(*exact, 1e-4);
     EXPECT_EQ(compact.set->clips()[0].keyframeCount(), 2u);
     EXPECT_EQ(compact.set->clips()[0].duration(), 1000.0);
     EXPECT_LE(largestDistance(*exact, *compact.set, 0, cubes(*exact, 1.0f), 100), 1e-4);
@@ -90,11 +91,9 @@ TEST(CompactClipsTest, keyframesThatTheirNeighboursTellAreDropped)
 
 TEST(CompactClipsTest, jumpsStay)
 {
-    ClipBuilder builder(twoJoints(), {});
-    ASSERT_TRUE(builder.add(
-        {Channel::Path::Translation, Channel::Interpolation::Step, 1, {0, 1, 2}, {0, 0, 0, 1, 0, 0, 0, 3, 0}}));
-    const auto exact = setOf(twoJoints(), {}, builder.build("steps"));
-    const CompactedSet compact = compactClips(*exact, cubes(*exact, 1.0f), {1e-4}).value();
+    const auto exact =
+        moving({{Channel::Path::Translation, Channel::Interpolation::Step, 1, {0, 1, 2}, {0, 0, 0, 1, 0, 0, 0, 3, 0}}});
+    const CompactedSet compact = compacted(*exact, 1e-4);
     EXPECT_NE(compact.set->clips()[0].compactTracks(), nullptr);
     for (const double time : {0.0, 0.999, 1.0, 1.5, 1.999, 2.0})
         EXPECT_LE(distanceAt(*exact, *compact.set, 0, time, cubes(*exact, 1.0f)), 1e-4) << time;
@@ -102,12 +101,10 @@ TEST(CompactClipsTest, jumpsStay)
 
 TEST(CompactClipsTest, whatHardlyMovesIsHeldAtRest)
 {
-    ClipBuilder builder(twoJoints(), {});
-    ASSERT_TRUE(builder.add(straightWay(4, 5.0)));
-    ASSERT_TRUE(builder.add(
-        {Channel::Path::Translation, Channel::Interpolation::Linear, 1, {0, 4}, {1.0, 1e-7, 0, 1.0, 0, -1e-7}}));
-    const auto exact = setOf(twoJoints(), {}, builder.build("walk"));
-    const CompactedSet compact = compactClips(*exact, cubes(*exact, 1.0f), {1e-4}).value();
+    const auto exact = moving(
+        {straightWay(4, 5.0),
+         {Channel::Path::Translation, Channel::Interpolation::Linear, 1, {0, 4}, {1.0, 1e-7, 0, 1.0, 0, -1e-7}}});
+    const CompactedSet compact = compacted(*exact, 1e-4);
     const CompactTracks& tracks = *compact.set->clips()[0].compactTracks();
     EXPECT_TRUE(tracks.tracks[0].translation.isMoving());
     EXPECT_FALSE(tracks.tracks[1].translation.isMoving());
@@ -120,14 +117,10 @@ TEST(CompactClipsTest, whatHardlyMovesIsHeldAtRest)
 TEST(CompactClipsTest, morphWeightsAreExact)
 {
     const std::vector<MorphWeights> morphs{{"face", -1, {0.5f, 0.0f}}};
-    ClipBuilder builder(twoJoints(), morphs);
-    ASSERT_TRUE(builder.add({Channel::Path::Weights,
-                             Channel::Interpolation::Linear,
-                             0,
-                             {0, 1, 2, 3},
-                             {0.1, 0, 0.3, 0.7, 0.1, 0.2, 0.1, 0.2}}));
-    const auto exact = setOf(twoJoints(), morphs, builder.build("talk"));
-    const CompactedSet compact = compactClips(*exact, cubes(*exact, 1.0f), {0.1}).value();
+    const std::vector<double> weights{0.1, 0, 0.3, 0.7, 0.1, 0.2, 0.1, 0.2};
+    const auto exact =
+        moving({{Channel::Path::Weights, Channel::Interpolation::Linear, 0, {0, 1, 2, 3}, weights}}, morphs);
+    const CompactedSet compact = compacted(*exact, 0.1);
     const Clip& clip = compact.set->clips()[0];
     ASSERT_EQ(clip.keyframeCount(), 4u) << "a tolerance is about places, not weights";
     for (std::size_t k = 0; k < 4; ++k)
@@ -160,102 +153,21 @@ TEST(CompactClipsTest, whatCannotBeATolerance)
 
 TEST(CompactClipsTest, rootMotionStaysAndTakingItOutOfACompactClipMakesThatExact)
 {
-    ClipBuilder builder(twoJoints(), {});
-    ASSERT_TRUE(builder.add(straightWay(10, 5.0)));
-    const auto exact = setOf(twoJoints(), {}, builder.build("walk"));
+    const auto exact = moving({straightWay(10, 5.0)});
     const auto stripped = withRootMotion(*exact, exact->skeleton().joint(0).name, {}).value();
-    const CompactedSet compact = compactClips(*stripped, cubes(*stripped, 1.0f), {1e-3}).value();
+    const CompactedSet compact = compacted(*stripped, 1e-3);
     ASSERT_NE(compact.set->clips()[0].rootMotion(), nullptr);
     EXPECT_EQ(compact.set->clips()[0].rootMotion()->keys.size(), compact.set->clips()[0].keyframeCount());
 
-    const CompactedSet first = compactClips(*exact, cubes(*exact, 1.0f), {1e-3}).value();
+    const CompactedSet first = compacted(*exact, 1e-3);
     const auto then = withRootMotion(*first.set, exact->skeleton().joint(0).name, {}).value();
     EXPECT_EQ(then->clips()[0].compactTracks(), nullptr);
     EXPECT_NE(first.set->clips()[0].compactTracks(), nullptr);
 }
 
-TEST(CompactClipsTest, aSetOfNothingAndOfStillsIsCompactAsWell)
-{
-    const auto empty = AnimationSet::create({Skeleton::create({}).value(), {}, {}, {}, {}}).value();
-    EXPECT_TRUE(compactClips(*empty, {}, {1e-3}));
-    const Skeleton skeleton = Skeleton::create({Joint()}).value();
-    ClipBuilder builder(skeleton, {});
-    const auto still = setOf(skeleton, {}, builder.build("still"));
-    EXPECT_TRUE(compactClips(*still, EntryBoxes(still->paletteSize()), {1e-3}));
-}
-
-/// Keyframes of one joint that turns and slides at random; their rotations are within `reach` of the identity.
-std::vector<JointTransform> randomKeyframes(std::size_t count, float reach, std::mt19937& random)
-{
-    std::uniform_real_distribution<float> component(-reach, reach);
-    std::vector<JointTransform> keyframes(count);
-    for (JointTransform& transform : keyframes)
-    {
-        transform.rotation =
-            glm::normalize(glm::vec4(component(random), component(random), component(random), 1.0f - reach + 0.01f));
-        transform.translation = glm::vec4(100.0f + component(random), 1e-3f * component(random), 2.0f, 0.0f);
-    }
-    return keyframes;
-}
-
-/// Tracks with the moving parts of data, where values keep at least 20 bits of their range. To be packed.
-CompactTracks finestTracks(const std::vector<JointTransform>& data, std::size_t trackCount, std::size_t jointCount)
-{
-    CompactTracks compact;
-    compact.tracks.resize(jointCount);
-    const std::size_t keyframeCount = trackCount == 0 ? 0 : data.size() / trackCount;
-    for (std::size_t joint = 0; joint < jointCount; ++joint)
-    {
-        CompactTracks::Track& track = compact.tracks[joint];
-        const auto set = [&](auto& part, glm::vec4 JointTransform::*which)
-        {
-            const PartKeys keys{&data[joint], trackCount, keyframeCount, which};
-            if (!keys.move()) return;
-            glm::vec3 least, most;
-            if constexpr (std::is_same_v<decltype(part), CompactTracks::RotationPart&>)
-            {
-                part.place = keys.omittedPlace();
-                keys.range(part.place, least, most);
-            }
-            else
-                keys.range(least, most);
-            part.firstBit = 0;
-            part.setRange(least, most, glm::uvec3(CompactTracks::mostBits));
-        };
-        set(track.translation, &JointTransform::translation);
-        set(track.rotation, &JointTransform::rotation);
-        set(track.scale, &JointTransform::scale);
-    }
-    return compact;
-}
-
 double apart(const glm::vec4& p, const glm::vec4& q)
 {
     return static_cast<double>(std::min(glm::length(p - q), glm::length(p + q)));
-}
-
-TEST(CompactTracksTest, valuesComeBackWithinHalfAStep)
-{
-    std::mt19937 random(11);
-    for (const float reach : {1e-4f, 0.01f, 0.3f, 1.0f})
-    {
-        SCOPED_TRACE(reach);
-        const std::vector<JointTransform> wanted = randomKeyframes(500, reach, random);
-        CompactTracks tracks = finestTracks(wanted, 1, 1);
-        const CompactTracks::RotationPart& rotation = tracks.tracks[0].rotation;
-        EXPECT_EQ(rotation.place == CompactTracks::largestPlace, reach == 1.0f) << "w comes near 0";
-        std::vector<JointTransform> found = wanted;
-        ASSERT_TRUE(tracks.pack(found, 1));
-        EXPECT_TRUE(tracks.isFor(1, 500));
-        // Ranges are rounded up to units of 1 / 512, and an omitted component of 0.3 makes errors larger.
-        const double most = 2.0 * (2.0 * static_cast<double>(reach) + 2.0 / 512.0) / (1u << 20);
-        for (std::size_t k = 0; k < wanted.size(); ++k)
-        {
-            EXPECT_LE(apart(found[k].rotation, wanted[k].rotation), most + 3e-7);
-            EXPECT_LE(glm::distance(found[k].translation, wanted[k].translation), 1e-5f); // floats around 100
-            EXPECT_EQ(found[k].translation.z, 2.0f);
-        }
-    }
 }
 
 TEST(CompactTracksTest, numbersReachBothEndsAndWithoutBitsAreTheMiddle)
@@ -271,35 +183,39 @@ TEST(CompactTracksTest, numbersReachBothEndsAndWithoutBitsAreTheMiddle)
     EXPECT_NEAR(rotation.valueOf(glm::uvec3(0u)).x, 0.15f, 1e-6f);
 }
 
-// Each part lies in one texel, whatever its bits.
+// Two translations of the finest numbers take a texel.
 TEST(CompactTracksTest, recordsHaveALargestSize)
 {
-    std::mt19937 random(3);
-    for (const std::size_t joints : {1u, 700u, 1500u})
+    const std::size_t largest = 2 * CompactTracks::mostTexels;
+    for (const std::size_t joints : {std::size_t(1), std::size_t(700), largest, largest + 1})
     {
-        std::vector<JointTransform> data;
-        for (std::size_t k = 0; k < 2; ++k)
+        std::vector<JointTransform> data(2 * joints);
+        CompactTracks tracks;
+        tracks.tracks.resize(joints);
+        for (std::size_t joint = 0; joint < joints; ++joint)
         {
-            const std::vector<JointTransform> keyframe = randomKeyframes(joints, 0.3f, random);
-            data.insert(data.end(), keyframe.begin(), keyframe.end());
+            data[joints + joint].translation.x = 1.0f;
+            CompactTracks::Part& translation = tracks.tracks[joint].translation;
+            translation.firstBit = 0;
+            translation.setRange(glm::vec3(0.0f), glm::vec3(1.0f), glm::uvec3(CompactTracks::mostBits));
         }
-        CompactTracks tracks = finestTracks(data, joints, joints);
-        EXPECT_EQ(tracks.pack(data, joints), joints < 1500u) << joints;
-        EXPECT_EQ(tracks.isFor(joints, 2), joints < 1500u) << joints;
+        const bool isPossible = joints <= largest;
+        EXPECT_EQ(tracks.pack(data, joints), isPossible) << joints;
+        EXPECT_EQ(tracks.isFor(joints, 2), isPossible) << joints;
+        EXPECT_EQ(data[joints].translation, glm::vec4(1, 0, 0, 0)) << "both ends are exact";
     }
 }
 
 // Applications attach nodes to joints without vertices, too.
 TEST(CompactClipsTest, jointsWithoutVerticesTurnAsTheyDid)
 {
-    ClipBuilder builder(twoJoints(), {});
-    Channel channel{Channel::Path::Rotation, Channel::Interpolation::Linear, 1, {0, 1, 2}, {}};
+    Channel sway{Channel::Path::Rotation, Channel::Interpolation::Linear, 1, {0, 1, 2}, {}};
     for (const double x : {0.0, 0.4, -0.3})
-        channel.values.insert(channel.values.end(), {0.0, 0.0, std::sin(x), std::cos(x)});
-    ASSERT_TRUE(builder.add(channel));
-    const auto exact = setOf(twoJoints(), {}, builder.build("sway"));
+        sway.values.insert(sway.values.end(), {0.0, 0.0, std::sin(x), std::cos(x)});
+    const auto exact = moving({sway});
     const EntryBoxes none(exact->paletteSize());
     const double size = longestSide(*exact, none);
+    EXPECT_NEAR(size, 1.0, 0.1) << "without vertices the joints are the size";
     const Clip made = compactClips(*exact, none, {1e-3 * size}).value().set->clips()[0];
     ASSERT_TRUE(made.compactTracks());
     ASSERT_EQ(made.keyframeCount(), 3u);
@@ -311,41 +227,12 @@ TEST(CompactClipsTest, jointsWithoutVerticesTurnAsTheyDid)
     }
 }
 
-// Near the joint a small turn does not count, far from it it does: the bits are those that the vertices need.
-TEST(CompactClipsTest, farVerticesHaveMoreBits)
-{
-    std::array<std::uint32_t, 2> bits{};
-    for (const bool isFar : {false, true})
-    {
-        ClipBuilder builder(twoJoints(), {});
-        Channel channel{Channel::Path::Rotation, Channel::Interpolation::Linear, 1, {0, 1, 2, 3}, {}};
-        for (const double x : {0.0, 0.4, -0.3, 0.17})
-            channel.values.insert(channel.values.end(), {0.0, 0.0, std::sin(x), std::cos(x)});
-        ASSERT_TRUE(builder.add(channel));
-        const auto set = setOf(twoJoints(), {}, builder.build("sway"));
-        const auto made = compactClips(*set, cubes(*set, isFar ? 64.0f : 1.0f), {1e-2}).value();
-        ASSERT_TRUE(made.set->clips()[0].compactTracks());
-        const CompactTracks::RotationPart& rotation = made.set->clips()[0].compactTracks()->tracks[1].rotation;
-        EXPECT_EQ(rotation.bits.x + rotation.bits.y, 0u) << "the axis of the turn alone has bits";
-        bits[isFar ? 1 : 0] = rotation.bits.z;
-        EXPECT_LE(made.errors[0], 1e-2);
-    }
-    EXPECT_NEAR(bits[1], bits[0] + 6, 1.0) << "64 times as far";
-}
-
-} // namespace
-
 TEST(CompactClipsTest, tracksThatDoNotFitAreRefused)
 {
-    ClipBuilder builder(twoJoints(), {});
     Channel bent = straightWay(8, 8.0);
     for (std::size_t key = 0; key < 9; ++key)
         bent.values[3 * key + 1] = static_cast<double>(key * key);
-    ASSERT_TRUE(builder.add(bent));
-    const auto set = setOf(twoJoints(), {}, builder.build("bent"));
-    const auto made = compactClips(*set, cubes(*set, 1.0f), {1e-2});
-    ASSERT_TRUE(made);
-    const Clip& clip = made.value().set->clips()[0];
+    const Clip clip = compacted(*moving({bent}), 1e-2).set->clips()[0];
     ASSERT_TRUE(clip.compactTracks());
     using Change = std::function<void(CompactTracks&)>;
     const std::pair<const char*, Change> changes[] = {
@@ -391,7 +278,6 @@ TEST(CompactClipsTest, smallTurnsAndScalesOfFarVerticesStay)
 {
     for (const bool isScale : {false, true})
     {
-        ClipBuilder builder(twoJoints(), {});
         Channel channel{
             isScale ? Channel::Path::Scale : Channel::Path::Rotation, Channel::Interpolation::Linear, 1, {0, 1, 2}, {}};
         for (const double x : {0.0, 2e-4, 0.0})
@@ -401,8 +287,7 @@ TEST(CompactClipsTest, smallTurnsAndScalesOfFarVerticesStay)
             else
                 channel.values.insert(channel.values.end(), {0.0, 0.0, std::sin(x), std::cos(x)});
         }
-        ASSERT_TRUE(builder.add(channel));
-        AnimationParts parts{twoJoints(), {}, {}, {}, {builder.build("sway")}};
+        AnimationParts parts{twoJoints(), {}, {}, {}, {clipOf(twoJoints(), {channel})}};
         AffineMatrix inverseBind;
         inverseBind.rows[0].w = 1000.0f; // vertices near 0 in the mesh's space are 1000 units from the joint
         parts.skins.push_back({"far", {0, 1}, {AffineMatrix(), inverseBind}});
@@ -421,10 +306,28 @@ TEST(CompactClipsTest, smallTurnsAndScalesOfFarVerticesStay)
     }
 }
 
-TEST(CompactClipsTest, withoutVerticesTheJointsAreTheSize)
+TEST(PackedKeyframesTest, whatDoesNotMoveIsStoredOnce)
 {
-    const auto set = setOf(twoJoints(), {}, ClipBuilder(twoJoints(), {}).build("still"));
-    EXPECT_NEAR(longestSide(*set, EntryBoxes(set->paletteSize())), 1.0, 1e-4);
+    std::vector<Joint> joints(50);
+    for (int j = 1; j < 50; ++j)
+        joints[static_cast<std::size_t>(j)].parent = j - 1;
+    const Skeleton skeleton = Skeleton::create(joints).value();
+    Channel turning{Channel::Path::Rotation, Channel::Interpolation::Linear, 7, {}, {}};
+    for (int k = 0; k < 100; ++k)
+    {
+        turning.times.push_back(k);
+        turning.values.insert(turning.values.end(), {0.0, 0.0, k % 2 == 0 ? 0.6 : 0.0, k % 2 == 0 ? 0.8 : 1.0});
+    }
+    const auto set = setOf(skeleton, {clipOf(skeleton, {turning})});
+    const PackedKeyframes packed(*set);
+    // The directory, the rest pose, two tables; then one rotation per keyframe. Snapshots would be 15,000 texels.
+    EXPECT_EQ(packed.texels().size(), 101u + 150u + 50u + 50u + 100u);
+    EXPECT_TRUE(packed.tracks()[7].hasExactKeys);
+    EXPECT_FALSE(packed.tracks()[8].hasExactKeys);
+    EXPECT_EQ(packed.tracks()[7].translation, PartMotion::Fixed);
+    EXPECT_EQ(PackedKeyframes(*setOf(Skeleton::create({}).value())).texels().size(), 1u) << "the directory alone";
 }
+
+} // namespace
 
 } // namespace osgGpuAnimation

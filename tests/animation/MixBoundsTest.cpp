@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/bounds/ClipBounds.h>
+#include <osgGpuAnimation/animation/bounds/JointRange.h>
 #include <osgGpuAnimation/animation/bounds/MixBounds.h>
+#include <osgGpuAnimation/animation/JointMask.h>
+#include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/math/Box.h>
 
+#include "support/ClipSets.h"
 #include "support/GaitSet.h"
 #include "support/RandomSet.h"
 
-#include <osgGpuAnimation/animation/AnimationController.h>
-#include <osgGpuAnimation/animation/bounds/ClipBounds.h>
-#include <osgGpuAnimation/animation/bounds/JointRange.h>
-#include <osgGpuAnimation/animation/JointMask.h>
-#include <osgGpuAnimation/animation/Pose.h>
-#include <osgGpuAnimation/authoring/ClipBuilder.h>
-
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,6 +21,7 @@
 #include <memory>
 #include <random>
 #include <utility>
+#include <vector>
 
 namespace osgGpuAnimation
 {
@@ -77,6 +79,14 @@ void setUpRandomly(AnimationController& controller, std::mt19937& random)
             if (mask) (void)l.setMask(mask.value());
         }
         if (random() % 4) (void)l.play(random() % clips);
+        if (const auto joint = random() % controller.set().skeleton().jointCount(); random() % 4 == 0)
+        {
+            const auto any = [&](double size) { return static_cast<float>(number(random, -size, size)); };
+            (void)l.pose().setRotation(joint, glm::quat(1.0f, any(1), any(1), any(1)));
+            (void)l.pose().setTranslation(joint / 2, glm::vec3(any(3), any(3), any(3)));
+            (void)l.pose().setScale(joint / 3, glm::vec3(any(2), any(2), any(2)));
+            (void)l.showPose(number(random, 0.0, 1.0));
+        }
         for (std::size_t fades = random() % 4; fades > 0; --fades)
         {
             (void)l.crossfade(random() % clips, number(random, 0.1, 1.0));
@@ -85,7 +95,7 @@ void setUpRandomly(AnimationController& controller, std::mt19937& random)
     }
 }
 
-TEST(MixBoundsTest, HoldWhateverLayersAndCrossfadesShow)
+TEST(MixBoundsTest, holdWhateverLayersAndCrossfadesShow)
 {
     constexpr unsigned int seed = 404;
     std::mt19937 random(seed);
@@ -112,99 +122,61 @@ TEST(MixBoundsTest, HoldWhateverLayersAndCrossfadesShow)
     }
 }
 
-/// A joint at rest at the origin, and a clip of one second that begins elsewhere.
-std::shared_ptr<const AnimationSet> startingElsewhere(Channel::Path path, const std::vector<double>& firstAndLast)
+/// A joint that holds still and then sways to both sides of its rest pose, in one second.
+struct Sway
 {
-    const Skeleton skeleton = Skeleton::create({Joint()}).value();
-    ClipBuilder builder(skeleton, {});
-    EXPECT_TRUE(builder.add({path, Channel::Interpolation::Linear, 0, {0, 1}, firstAndLast}));
-    return AnimationSet::create({skeleton, {}, {}, {}, {builder.build("away")}}).value();
-}
+    Channel::Path path;
+    std::vector<double> still, moving; ///< first and last value
 
-TEST(MixBoundsTest, AnAdditiveLayerIsMeasuredFromTheFirstFrame)
+    std::shared_ptr<const AnimationSet> makeSet() const
+    {
+        const auto clip = [this](const std::vector<double>& values) {
+            return clipOf(oneJoint(), {{path, Channel::Interpolation::Linear, 0, {0, 1}, values}});
+        };
+        return setOf(oneJoint(), {clip(still), clip(moving)});
+    }
+};
+
+const double half = std::sqrt(0.5);
+const Sway sways[] = {{Channel::Path::Translation, {0, 0, 0, 0, 0, 0}, {-3, 0, 0, 3, 0, 0}},
+                      {Channel::Path::Scale, {1, 1, 1, 1, 1, 1}, {0.25, 0.25, 0.25, 1.75, 1.75, 1.75}},
+                      {Channel::Path::Rotation, {0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, -half, half, 0, 0, half, half}}};
+
+void expectBoundsHoldTenFrames(AnimationController& controller)
 {
-    struct Case
+    const EntryBoxes boxes = someBoxes(controller.set());
+    const MixBounds bounds(controller.set(), boxes);
+    std::vector<PlayedClip> played;
+    for (int frame = 0; frame < 10; ++frame, controller.advance(0.1))
     {
-        const char* name;
-        Channel::Path path;
-        std::vector<double> firstAndLast;
-    };
-    const double half = std::sqrt(0.5);
-    const Case cases[] = {{"across the rest place", Channel::Path::Translation, {-3, 0, 0, 3, 0, 0}},
-                          {"growing from small", Channel::Path::Scale, {0.25, 0.25, 0.25, 2, 2, 2}},
-                          {"across the rest turn", Channel::Path::Rotation, {0, 0, -half, half, 0, 0, half, half}}};
-    for (const Case& c : cases)
-    {
-        const auto set = startingElsewhere(c.path, c.firstAndLast);
-        const EntryBoxes boxes = someBoxes(*set);
-        const MixBounds bounds(*set, boxes);
-        AnimationController controller(set);
-        AnimationLayer& added = controller.layer(1);
-        added.setMode(AnimationLayer::Mode::Additive, AnimationLayer::Reference::FirstFrame);
-        added.setLoopMode(LoopMode::Once);
-        ASSERT_TRUE(added.play(0));
-        std::vector<PlayedClip> played;
-        for (int frame = 0; frame <= 10; ++frame, controller.advance(0.1))
-        {
-            findPlayedClips(controller, played);
-            Box seen;
-            EXPECT_LE(outside(bounds.box(played), controller, boxes, seen), 0.0) << c.name << ", frame " << frame;
-        }
+        findPlayedClips(controller, played);
+        Box seen;
+        EXPECT_LE(outside(bounds.box(played), controller, boxes, seen), 0.0) << frame;
     }
 }
 
-// A clip that holds still and one that moves to both sides of it: each mixes with the other's whole way.
-TEST(MixBoundsTest, AMixHoldsTheWholeWayOfEitherClip)
+TEST(MixBoundsTest, aMixHoldsTheWholeWayOfEitherClipAndAnAddedClipThatFromItsFirstFrame)
 {
-    const double half = std::sqrt(0.5);
-    const struct
+    for (const Sway& sway : sways)
     {
-        Channel::Path path;
-        std::vector<double> still, moving; ///< first and last value
-    } cases[] = {{Channel::Path::Translation, {0, 0, 0, 0, 0, 0}, {-3, 0, 0, 3, 0, 0}},
-                 {Channel::Path::Scale, {1, 1, 1, 1, 1, 1}, {0.25, 0.25, 0.25, 1.75, 1.75, 1.75}},
-                 {Channel::Path::Rotation, {0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, -half, half, 0, 0, half, half}}};
-    for (const auto& c : cases)
-        for (const bool isMovingFirst : {false, true})
+        SCOPED_TRACE(static_cast<int>(sway.path));
+        const auto set = sway.makeSet();
+        for (const std::size_t first : {0u, 1u})
         {
-            const Skeleton skeleton = Skeleton::create({Joint()}).value();
-            std::vector<Clip> clips;
-            for (const std::vector<double>& values : {c.still, c.moving})
-            {
-                ClipBuilder builder(skeleton, {});
-                ASSERT_TRUE(builder.add({c.path, Channel::Interpolation::Linear, 0, {0, 1}, values}));
-                clips.push_back(builder.build("clip"));
-            }
-            const auto set = AnimationSet::create({skeleton, {}, {}, {}, std::move(clips)}).value();
-            const EntryBoxes boxes = someBoxes(*set);
-            const MixBounds bounds(*set, boxes);
             AnimationController controller(set);
-            ASSERT_TRUE(controller.play(isMovingFirst ? 1 : 0));
-            ASSERT_TRUE(controller.crossfade(isMovingFirst ? 0 : 1, 1.0));
-            std::vector<PlayedClip> played;
-            for (int frame = 0; frame < 10; ++frame, controller.advance(0.1))
-            {
-                findPlayedClips(controller, played);
-                Box seen;
-                EXPECT_LE(outside(bounds.box(played), controller, boxes, seen), 0.0) << frame;
-            }
+            ASSERT_TRUE(controller.play(first));
+            ASSERT_TRUE(controller.crossfade(1 - first, 1.0));
+            expectBoundsHoldTenFrames(controller);
         }
+        AnimationController controller(set);
+        AnimationLayer& added = controller.layer(1);
+        added.setMode(AnimationLayer::Mode::Additive, AnimationLayer::Reference::FirstFrame);
+        ASSERT_TRUE(added.play(1));
+        expectBoundsHoldTenFrames(controller);
+    }
 }
 
-TEST(MixBoundsTest, OfGaitsTheyAreNotMuchWiderThanTheGaits)
-{
-    const auto set = makeGaitSet();
-    const EntryBoxes boxes = someBoxes(*set);
-    const MixBounds bounds(*set, boxes);
-    Box gaits;
-    for (const char* name : {"Walk", "Run"})
-        gaits.add(boundsOfClip(*set, set->findClip(name), boxes));
-    const Box mixed = bounds.box({{set->findClip("Walk")}, {set->findClip("Run")}});
-    // A ball bounds a joint's sway, so a swing in one plane also widens the bounds to its sides.
-    EXPECT_LE(glm::length(mixed.max - mixed.min), 2.5f * glm::length(gaits.max - gaits.min));
-}
-
-TEST(MixBoundsTest, ClipsPlayedAreThoseThatShow)
+TEST(MixBoundsTest, clipsPlayedAreThoseThatShow)
 {
     const auto set = makeGaitSet();
     AnimationController controller(set);
@@ -219,7 +191,9 @@ TEST(MixBoundsTest, ClipsPlayedAreThoseThatShow)
     };
     EXPECT_EQ(clips(), (std::vector<int>{-1})) << "nothing plays: the rest pose";
     ASSERT_TRUE(controller.crossfade(2, 1.0));
+    controller.advance(0.25);
     EXPECT_EQ(clips(), (std::vector<int>{2, -1})) << "rises out of the rest pose";
+    EXPECT_FLOAT_EQ(controller.instruction().samples[0].weight, 0.25f);
     ASSERT_TRUE(controller.play(1));
     EXPECT_EQ(clips(), (std::vector<int>{1}));
     ASSERT_TRUE(controller.crossfade(2, 1.0));
@@ -237,7 +211,7 @@ TEST(MixBoundsTest, ClipsPlayedAreThoseThatShow)
     EXPECT_EQ(clips(), (std::vector<int>{2, -1})) << "what weights leave of 1";
 }
 
-TEST(MixBoundsTest, WhateverCanShowIsPlayed)
+TEST(MixBoundsTest, whateverCanShowIsPlayed)
 {
     const auto set = makeGaitSet();
     std::vector<PlayedClip> played;
@@ -285,7 +259,7 @@ TEST(MixBoundsTest, WhateverCanShowIsPlayed)
 }
 
 // One joint at rest: the box is that of the entry for the weights that can occur.
-TEST(MixBoundsTest, TheEntrysBoxIsThatOfTheWeightsThatCanOccur)
+TEST(MixBoundsTest, theEntrysBoxIsThatOfTheWeightsThatCanOccur)
 {
     const std::vector<MorphWeights> morphs{{"face", 0, {-0.5f}}, {"/cameras/0", -1, {100.0f}}};
     const auto set = AnimationSet::create({Skeleton::create({Joint()}).value(), {}, {}, morphs, {}}).value();
@@ -332,7 +306,7 @@ TEST(MixBoundsTest, TheEntrysBoxIsThatOfTheWeightsThatCanOccur)
 }
 
 // Poses and constraints that may turn, move or scale a joint.
-TEST(MixBoundsTest, PosesAndConstraintsReachAsFarAsTheirJoints)
+TEST(MixBoundsTest, posesAndConstraintsReachAsFarAsTheirJoints)
 {
     std::vector<Joint> joints(2);
     joints[0].name = "a", joints[1].name = "b";
@@ -365,5 +339,81 @@ TEST(MixBoundsTest, PosesAndConstraintsReachAsFarAsTheirJoints)
     }
 }
 
+TEST(JointRangeTest, sumsHoldBothAndDifferencesAreMeasuredFromTheReference)
+{
+    const auto aboutZ = [](double half) { return glm::dvec4(0.0, 0.0, std::sin(half), std::cos(half)); };
+    JointRange a, b;
+    a.translation = {1, 0, 0}, a.shift = 1.0;
+    a.scale = {2, 1, 1}, a.stretch = 0.5;
+    a.rotation = aboutZ(0.2), a.turn = 0.1;
+    b.translation = {-3, 2, 0}, b.shift = 0.5;
+    b.scale = {1, 1, 4}, b.stretch = 0.25;
+    b.rotation = -aboutZ(-0.4), b.turn = 0.05;
+    for (const bool isSwapped : {false, true})
+    {
+        JointRange both = isSwapped ? b : a;
+        both.add(isSwapped ? a : b);
+        EXPECT_NEAR(glm::distance(both.translation, glm::dvec3(-0.75, 0.75, 0)), 0.0, 1e-12);
+        EXPECT_NEAR(both.shift, std::hypot(2.25, 1.25) + 0.5, 1e-12);
+        EXPECT_NEAR(glm::distance(both.scale, glm::dvec3(1.625, 1.0, 2.375)), 0.0, 1e-12);
+        EXPECT_NEAR(both.stretch, 1.875, 1e-12);
+        EXPECT_NEAR(std::abs(glm::dot(both.rotation, aboutZ(-0.1))), 1.0, 1e-12);
+        EXPECT_NEAR(both.turn, 0.3 + 0.1, 1e-9);
+    }
+    JointTransform reference;
+    reference.translation = {-3, 6, 0, 0};
+    reference.rotation = glm::vec4(aboutZ(0.1));
+    reference.scale = {-0.5f, 0.0f, 2.0f, 0.0f};
+    JointRange added = a;
+    added.addDifference(b, reference);
+    EXPECT_NEAR(added.shift, 1.0 + 4.0 + 0.5, 1e-12);
+    EXPECT_NEAR(added.turn, 0.1 + 0.5 + 0.05, 1e-6);
+    // The first axis may grow by (1.5 + 0.25) / 0.5; the second has no ratio.
+    EXPECT_NEAR(added.stretch, 0.5 + 2.5 * 3.5, 1e-12);
+    EXPECT_EQ(added.translation, a.translation);
+    b.rotation = aboutZ(1.8);
+    a.add(b);
+    EXPECT_EQ(a.turn, JointRange::anyTurn) << "rotations may lie on two hemispheres";
+}
+
+// The curves between two keys rise above both of them, just after the first or just before the second.
+TEST(JointRangeTest, holdsASplineThatOvershootsJustBeforeOrAfterAKey)
+{
+    for (const bool isBefore : {false, true})
+    {
+        const auto spline = [&](Channel::Path path, std::vector<double> key, std::size_t axis)
+        {
+            std::vector<double> out(key.size()), in(key.size()), values;
+            (isBefore ? in : out)[axis] = isBefore ? -6.0 : 6.0;
+            for (const std::vector<double>& part : {in, key, out, in, key, out})
+                values.insert(values.end(), part.begin(), part.end());
+            return Channel{path, Channel::Interpolation::CubicSpline, 0, {0, 1}, values};
+        };
+        const Clip clip = clipOf(oneJoint(), {spline(Channel::Path::Translation, {1, 2, 3}, 1),
+                                              spline(Channel::Path::Scale, {1, 1, 2}, 2),
+                                              spline(Channel::Path::Rotation, {0, 0, 0.1, 5}, 2)});
+        const auto set = setOf(oneJoint(), {clip});
+        const JointRange range = rangesOfClip(*set, &set->clips()[0])[0];
+        double highest = 0.0;
+        for (double time = 0.0; time <= 1.0; time += 1.0 / 64)
+        {
+            PoseInstruction instruction;
+            instruction.samples[0] = set->sampleAt(0, time);
+            std::vector<JointTransform> tracks;
+            Pose::mix(*set, instruction, tracks);
+            const glm::dvec3 moved = glm::dvec3(tracks[0].translation) - range.translation;
+            const glm::dvec3 grown = glm::dvec3(tracks[0].scale) - range.scale;
+            const double cosine = std::abs(glm::dot(glm::dvec4(tracks[0].rotation), range.rotation));
+            EXPECT_LE(glm::length(moved), range.shift + 1e-6) << time;
+            EXPECT_LE(largestComponent(glm::abs(grown)), range.stretch + 1e-6) << time;
+            EXPECT_LE(std::acos(std::min(cosine, 1.0)), range.turn + 1e-6) << time;
+            highest = std::max(highest, static_cast<double>(tracks[0].translation.y));
+        }
+        EXPECT_GT(highest, 2.8) << "2 at both keys";
+        EXPECT_LE(range.translation.y + range.shift, 4.0 + 1e-6) << "a third of the tangent, not more";
+    }
+}
+
 } // namespace
+
 } // namespace osgGpuAnimation

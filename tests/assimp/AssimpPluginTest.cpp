@@ -6,12 +6,15 @@
 #include "support/ScratchFolder.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
 #include <osg/Texture2D>
 #include <osgDB/ReadFile>
 #include <osgDB/Registry>
 
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 namespace osgGpuAnimation
 {
@@ -36,25 +39,72 @@ public:
     osg::ref_ptr<const osg::Image> picture;
 };
 
+/// Motion capture of the arm: its lower bone turns about X.
+const char* const bvh = R"(HIERARCHY
+ROOT upper
+{
+    OFFSET 0 0 0
+    CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
+    JOINT lower
+    {
+        OFFSET 0 2 0
+        CHANNELS 3 Zrotation Xrotation Yrotation
+        End Site
+        {
+            OFFSET 0 2 0
+        }
+    }
+}
+MOTION
+Frames: 3
+Frame Time: 0.5
+0 0 0 0 0 0 0 0 0
+0 0 0 0 0 0 0 45 0
+0 0 0 0 0 0 0 90 0
+)";
+
+/// The arm as glTF, upwards.
+const char* const arm = R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+    "nodes": [{"name": "upper", "children": [1]}, {"name": "lower", "translation": [0, 2, 0]}]})";
+
 class AssimpPluginTest : public ::testing::Test
 {
 protected:
-    AssimpPluginTest() { usePluginsOfTheBuild(); }
+    AssimpPluginTest()
+    {
+        usePluginsOfTheBuild();
+        osg::setNotifyHandler(log);
+        folder.write("bend.bvh", bvh);
+    }
+    ~AssimpPluginTest() override { osg::setNotifyHandler(new osg::StandardNotifyHandler); }
+
+    /// The names of the character's clips; the log has the warnings.
+    std::vector<std::string> clipsOf(const std::string& file, const std::string& options)
+    {
+        log->text.clear();
+        const osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(file, new osgDB::Options(options));
+        AnimatedCharacter* const character = node ? findCharacter(*node) : nullptr;
+        std::vector<std::string> names;
+        for (std::size_t clip = 0; character && clip < character->getAnimationSet().clips().size(); ++clip)
+            names.push_back(character->getAnimationSet().clips()[clip].name());
+        return names;
+    }
 
     ScratchFolder folder;
+    const osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::WARN);
 };
+
+using AssimpClipsTest = AssimpPluginTest;
 
 TEST_F(AssimpPluginTest, osgDbReadsCharactersOfOtherFormats)
 {
     folder.write("arm.md5anim", md5Anim());
-    const std::string own[] = {folder.write("arm.md5mesh", md5Mesh()), folder.write("flag.x", xFile()) + ".assimp"};
+    const std::string own[] = {folder.write("arm.md5mesh", md5Mesh()), folder.file("bend.bvh") + ".assimp"};
     std::vector<std::string> files(std::begin(own), std::end(own));
     for (const char* name : {"animation_with_skeleton.fbx", "huesitos.fbx", "01_01.bvh"})
         if (const std::string file = sharedFile(std::string("assets/assimp/") + name); !file.empty())
             files.push_back(file + (file.back() == 'h' ? ".assimp" : ""));
     const osg::ref_ptr<osgDB::Options> options = new osgDB::Options("speed=2");
-    const osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::WARN);
-    osg::setNotifyHandler(log);
     for (const std::string& file : files)
     {
         SCOPED_TRACE(file);
@@ -65,7 +115,6 @@ TEST_F(AssimpPluginTest, osgDbReadsCharactersOfOtherFormats)
         EXPECT_TRUE(character->getController().isPlaying());
         EXPECT_EQ(character->getController().speed(), 2.0);
     }
-    osg::setNotifyHandler(new osg::StandardNotifyHandler);
     EXPECT_NE(log->text.find("arm.md5mesh: picture \"arm_d.tga\": is neither in the file nor beside it"),
               std::string::npos)
         << log->text;
@@ -113,6 +162,62 @@ TEST_F(AssimpPluginTest, faultsAreMessages)
         EXPECT_NE(read.message().find(each.says), std::string::npos) << each.file << ": " << read.message();
     }
     EXPECT_FALSE(osgDB::Registry::instance()->readNode(folder.file("missing.fbx"), nullptr).validNode());
+}
+
+TEST_F(AssimpClipsTest, clipsComeFromOtherFormats)
+{
+    folder.write("wave.md5mesh", md5Mesh());
+    folder.write("wave.md5anim", md5Anim());
+    const std::string gltf = folder.write("arm.gltf", arm), md5 = folder.write("arm.md5mesh", md5Mesh());
+    const std::string options = "clips=bend.bvh clips=wave.md5mesh";
+    EXPECT_EQ(clipsOf(gltf, options), (std::vector<std::string>{"bend", "wave"})) << log->text;
+    EXPECT_EQ(log->text, "");
+    EXPECT_EQ(clipsOf(md5, options), (std::vector<std::string>{"bend", "wave"})) << log->text;
+}
+
+TEST_F(AssimpClipsTest, theLowerArmBends)
+{
+    const osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(
+        folder.write("arm.gltf", arm), new osgDB::Options("clips=bend.bvh noRotation start=0.5"));
+    ASSERT_TRUE(node);
+    const AnimatedCharacter* const character = findCharacter(*node);
+    ASSERT_TRUE(character);
+    const Result<osg::Matrixd> lower = character->jointToModel("lower");
+    ASSERT_TRUE(lower) << lower.error().message;
+    // By 45 degrees.
+    const double side = std::sqrt(0.5);
+    EXPECT_LT((osg::Vec3d(0, 1, 0) * lower.value() - osg::Vec3d(0, 2 + side, side)).length(), 1e-5);
+}
+
+TEST_F(AssimpClipsTest, aFaultyFileCostsItsClipsAlone)
+{
+    const ScratchFolder outside;
+    folder.write("cut.fbx", "Kaydara FBX Binary  ");
+    folder.write("notes.txt", "no model");
+    const std::string file = folder.write("arm.gltf", arm);
+    const struct
+    {
+        std::string options, says;
+    } cases[] = {{"clips=cut.fbx", "clips \"cut.fbx\": Assimp cannot read it"},
+                 {"clips=notes.txt", "clips \"notes.txt\": Assimp cannot read it"},
+                 {"clips=" + outside.write("far.bvh", bvh), "allowOutsideFiles"},
+                 {"maxDecodedBytes=100 clips=bend.bvh", "clips \"bend.bvh\": "}};
+    for (const auto& one : cases)
+    {
+        const bool isLimited = one.options[0] == 'm';
+        const std::vector<std::string> names = clipsOf(file, one.options + (isLimited ? "" : " clips=bend.bvh"));
+        EXPECT_EQ(names.size(), isLimited ? 0u : 1u) << one.options << ": " << log->text;
+        EXPECT_NE(log->text.find(one.says), std::string::npos) << one.options << ": " << log->text;
+    }
+}
+
+TEST_F(AssimpClipsTest, aCrowdPassesThemOn)
+{
+    const osg::ref_ptr<osg::Node> node =
+        osgDB::readRefNodeFile(folder.write("arm.gltf", arm) + ".2x2.crowd", new osgDB::Options("clips=bend.bvh"));
+    const auto* const crowd = dynamic_cast<const AnimatedCrowd*>(node.get());
+    ASSERT_TRUE(crowd);
+    EXPECT_EQ(crowd->getAnimationSet().clips().size(), 1u);
 }
 
 } // namespace

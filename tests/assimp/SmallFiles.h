@@ -166,38 +166,4 @@ frame 3 {
 )";
 }
 
-/// DirectX: a triangle that its frame moves, in ticks of 4,800 a second. Assimp takes a comma for a decimal point
-/// unless the number has one.
-inline std::string xFile()
-{
-    return R"(xof 0303txt 0032
-AnimTicksPerSecond { 4800; }
-Frame Root {
- FrameTransformMatrix { 1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0;; }
- Frame Flag {
-  FrameTransformMatrix { 1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,1.0,0.0,1.0;; }
-  Mesh Cloth {
-   3;
-   0.0;0.0;0.0;,
-   1.0;0.0;0.0;,
-   0.0;1.0;0.0;;
-   1;
-   3;0,1,2;;
-   MeshMaterialList { 1; 1; 0;
-    Material { 0.2;0.4;0.6;1;; 25; 0;0;0;; 0;0;0;; }
-   }
-  }
- }
-}
-AnimationSet Wave {
- Animation {
-  { Flag }
-  AnimationKey { 2; 3; 0;3;0.0,1.0,0.0;;,2400;3;2.0,1.0,0.0;;,4800;3;0.0,3.0,1.0;;; }
-  AnimationKey { 0; 3; 0;4;1.0,0.0,0.0,0.0;;,2400;4;0.8,0.6,0.0,0.0;;,4800;4;1.0,0.0,0.0,0.0;;; }
-  AnimationKey { 1; 2; 0;3;1.0,1.0,1.0;;,4800;3;1.0,2.0,1.0;;; }
- }
-}
-)";
-}
-
 } // namespace osgGpuAnimation

@@ -101,8 +101,7 @@ TEST_F(ConstraintsGLTest, randomSettingsAreTheTwinsPose)
     }
     std::printf("%zu compared, the worst by %.2e\n", compared, worst);
     EXPECT_GE(compared, 250u) << "of 500: the others are near singular axes";
-    // Rounding of floats times the sensitivity of up to 57, over up to nine constraints; real models: 1e-5
-    // (LayersOfModelsGLTest).
+    // Rounding of floats times the sensitivity of up to 57, over up to nine constraints.
     EXPECT_LE(worst, 3e-5);
 }
 

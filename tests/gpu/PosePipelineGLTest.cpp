@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: MIT
-#include "support/GLTest.h"
+#include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/animation/keyframes/PackedKeyframes.h>
+#include <osgGpuAnimation/gpu/buffers/InstanceTransforms.h>
+#include <osgGpuAnimation/gpu/passes/FeedbackTimer.h>
+
+#include "gpu/PoseGLTest.h"
 #include "support/NotifyLog.h"
 #include "support/RandomLayers.h"
 #include "support/RandomSet.h"
 
-#include <osgGpuAnimation/animation/AnimationController.h>
-#include <osgGpuAnimation/animation/keyframes/PackedKeyframes.h>
-#include <osgGpuAnimation/animation/Pose.h>
-#include <osgGpuAnimation/gpu/PosePipeline.h>
-
 #include <layout.glsl>
 
+#include <osg/GLExtensions>
+
 #include <algorithm>
-#include <cmath>
+#include <chrono>
 #include <random>
 
 namespace osgGpuAnimation
@@ -20,23 +22,6 @@ namespace osgGpuAnimation
 
 namespace
 {
-
-/// The largest difference of two palettes, relative to the larger of 1 and the reference's largest number.
-double difference(const std::vector<AffineMatrix>& palette, const std::vector<AffineMatrix>& reference)
-{
-    double worst = palette.size() == reference.size() ? 0.0 : 1e30;
-    double size = 1.0;
-    for (std::size_t entry = 0; entry < palette.size() && worst < 1e30; ++entry)
-        for (std::size_t row = 0; row < 3; ++row)
-            for (int column = 0; column < 4; ++column)
-            {
-                const double expected = reference[entry].rows[row][column];
-                const double found = palette[entry].rows[row][column];
-                worst = std::max(worst, std::isfinite(found) ? std::abs(found - expected) : 1e30);
-                size = std::max(size, std::abs(expected));
-            }
-    return worst / size;
-}
 
 struct Instance
 {
@@ -78,11 +63,6 @@ struct PipelineData
     bool hasGarments{false}; ///< further entries of joints of all levels
 };
 
-void PrintTo(const PipelineData& data, std::ostream* out)
-{
-    *out << data.name;
-}
-
 const PipelineData pipelineData[] = {
     {"one character", {1, 30, 8, 5, false, false, false}, 1, Roots::None, 0},
     {"many, each at its own time", {2, 30, 8, 5, false, true, true}, 100, Roots::None, 0},
@@ -115,48 +95,40 @@ std::shared_ptr<const AnimationSet> withGarments(const AnimationSet& set)
     return set.withGarments(garments).value();
 }
 
-class PosePipelineGLTest : public GLTest,
-                           public ::testing::WithParamInterface<std::tuple<PipelineData, PosePipeline::Form>>
-{
-};
+using PosePipelineGLTest = PoseFormsGLTest;
 
 TEST_P(PosePipelineGLTest, agreesWithTheCpuTwin)
 {
-    const PipelineData& data = std::get<0>(GetParam());
-    const auto bare = makeRandomSet(data.shape);
-    const auto set = data.hasGarments ? withGarments(*bare) : bare;
-    ASSERT_EQ(set->paletteSize() > bare->paletteSize(), data.hasGarments);
-    const std::vector<Instance> instances = randomInstances(*set, data.instances, data.shape.seed + 100);
-    PoseBatch batch(set);
-    if (data.roots == Roots::One) batch.setRootMatrix(instances.front().root);
-    for (const Instance& instance : instances)
-        data.roots == Roots::Own ? batch.add(instance.instruction, instance.root) : batch.add(instance.instruction);
-
-    PosePipeline* pipeline = PosePipeline::of(state());
-    ASSERT_NE(pipeline, nullptr);
-    if (data.maxTexels != 0) pipeline->options().maxTexels = data.maxTexels;
-    pipeline->options().form = std::get<1>(GetParam());
-    ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
-
-    // Rounding in float32 once a level, the twin computes in double.
-    const double tolerance = 1e-7 * (10 + data.shape.depth);
-    const std::size_t step = instances.size() / 50 + 1;
-    for (std::size_t i = 0; i < instances.size(); i += step)
+    const std::size_t ownTexels = pipeline->options().maxTexels;
+    for (const PipelineData& data : pipelineData)
     {
-        std::vector<AffineMatrix> expected;
-        AffineMatrix root;
-        if (data.roots != Roots::None) root = instances[data.roots == Roots::Own ? i : 0].root;
-        Pose::evaluate(*set, instances[i].instruction, root, expected);
-        EXPECT_LT(difference(pipeline->readPalette(state(), *set, 0, i), expected), tolerance) << "instance " << i;
+        SCOPED_TRACE(data.name);
+        const auto bare = makeRandomSet(data.shape);
+        const auto set = data.hasGarments ? withGarments(*bare) : bare;
+        ASSERT_EQ(set->paletteSize() > bare->paletteSize(), data.hasGarments);
+        const std::vector<Instance> instances = randomInstances(*set, data.instances, data.shape.seed + 100);
+        PoseBatch batch(set);
+        if (data.roots == Roots::One) batch.setRootMatrix(instances.front().root);
+        for (const Instance& instance : instances)
+            data.roots == Roots::Own ? batch.add(instance.instruction, instance.root) : batch.add(instance.instruction);
+        pipeline->options().maxTexels = data.maxTexels != 0 ? data.maxTexels : ownTexels;
+        ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
+
+        // Rounding in float32 once a level, the twin computes in double.
+        const double tolerance = 1e-7 * (10 + data.shape.depth);
+        const std::size_t step = instances.size() / 50 + 1;
+        for (std::size_t i = 0; i < instances.size(); i += step)
+        {
+            AffineMatrix root;
+            if (data.roots != Roots::None) root = instances[data.roots == Roots::Own ? i : 0].root;
+            EXPECT_LT(differenceFromTwin(*set, instances[i].instruction, i, root), tolerance) << "instance " << i;
+        }
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Sets, PosePipelineGLTest,
-                         ::testing::Combine(::testing::ValuesIn(pipelineData),
-                                            ::testing::Values(PosePipeline::Form::Fused,
-                                                              PosePipeline::Form::Separate)));
+INSTANTIATE_TEST_SUITE_P(Forms, PosePipelineGLTest, bothForms, nameOfForm);
 
-using PosePipelineCostGLTest = GLTest;
+using PosePipelineCostGLTest = PoseGLTest;
 
 // Chunks are padded to whole triangles: the padding counts too.
 TEST_F(PosePipelineCostGLTest, palettesFitTheLargestTextureBuffer)
@@ -166,7 +138,6 @@ TEST_F(PosePipelineCostGLTest, palettesFitTheLargestTextureBuffer)
     const std::size_t least = PackedKeyframes(*set).texels().size() / texels + 1;
     for (std::size_t capacity = least; capacity < least + 4; ++capacity)
     {
-        PosePipeline* pipeline = PosePipeline::of(state());
         pipeline->options().maxTexels = capacity * texels;
         PoseBatch batch(set);
         for (std::size_t i = 0; i < 3 * capacity; ++i)
@@ -184,55 +155,22 @@ TEST_F(PosePipelineCostGLTest, palettesFitTheLargestTextureBuffer)
 TEST_F(PosePipelineCostGLTest, drawsDependOnTheSetAloneNotOnTheNumberOfCharacters)
 {
     const auto set = makeRandomSet({});
-    PosePipeline* pipeline = PosePipeline::of(state());
     for (const std::size_t count : {1, 10, 100})
     {
         PoseBatch batch(set);
         for (const Instance& instance : randomInstances(*set, count, 1))
             batch.add(instance.instruction);
-        const PosePipeline::Counters before = pipeline->getCounters();
-        pipeline->evaluate(state(), batch, 0);
-        EXPECT_EQ(pipeline->getCounters().feedbackDraws - before.feedbackDraws, set->levelCount());
-        EXPECT_EQ(pipeline->getCounters().bytesUploaded - before.bytesUploaded, 16 * count);
+        const PosePipeline::Counters cost = costOf(batch);
+        EXPECT_EQ(cost.feedbackDraws, set->levelCount());
+        EXPECT_EQ(cost.bytesUploaded, 16 * count);
+        const PosePipeline::Counters again = costOf(batch);
+        EXPECT_EQ(again.feedbackDraws + again.bytesUploaded, 0u) << "unchanged";
     }
-}
-
-TEST_F(PosePipelineCostGLTest, oneRootMatrixForAllIsUploadedOnce)
-{
-    const auto set = makeRandomSet({});
-    PosePipeline* pipeline = PosePipeline::of(state());
-    const std::vector<Instance> instances = randomInstances(*set, 100, 1);
-    for (const std::size_t expected : {100u * 16u + 48u, 100u * 16u})
-    {
-        PoseBatch batch(set);
-        batch.setRootMatrix(instances[0].root);
-        EXPECT_TRUE(batch.hasRootMatrix(instances[0].root));
-        EXPECT_FALSE(batch.hasRootMatrix(instances[1].root));
-        for (const Instance& instance : randomInstances(*set, 100, expected))
-            batch.add(instance.instruction);
-        const PosePipeline::Counters before = pipeline->getCounters();
-        ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
-        EXPECT_EQ(pipeline->getCounters().bytesUploaded - before.bytesUploaded, expected);
-    }
-}
-
-TEST_F(PosePipelineCostGLTest, unchangedBatchCostsNothing)
-{
-    const auto set = makeRandomSet({});
-    PosePipeline* pipeline = PosePipeline::of(state());
-    PoseBatch batch(set);
-    batch.add(instructionAt(*set, 0, 0.4), AffineMatrix());
-    pipeline->evaluate(state(), batch, 0);
-    const PosePipeline::Counters before = pipeline->getCounters();
-    pipeline->evaluate(state(), batch, 0);
-    EXPECT_EQ(pipeline->getCounters().feedbackDraws, before.feedbackDraws);
-    EXPECT_EQ(pipeline->getCounters().bytesUploaded, before.bytesUploaded);
 }
 
 TEST_F(PosePipelineCostGLTest, sendsTheRootsThatMovedAlone)
 {
     const auto set = makeRandomSet({});
-    PosePipeline* pipeline = PosePipeline::of(state());
     std::vector<Instance> instances = randomInstances(*set, 100, 1);
     for (const std::vector<std::size_t>& moved : {std::vector<std::size_t>{}, {0}, {57}, {99}, {40, 60}, {0, 99}})
     {
@@ -241,16 +179,10 @@ TEST_F(PosePipelineCostGLTest, sendsTheRootsThatMovedAlone)
         PoseBatch batch(set);
         for (const Instance& instance : instances)
             batch.add(instance.instruction, instance.root);
-        const PosePipeline::Counters before = pipeline->getCounters();
-        ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
         const std::size_t sent = moved.empty() ? 100 * (16 + 48) : (moved.back() - moved.front() + 1) * 48;
-        EXPECT_EQ(pipeline->getCounters().bytesUploaded - before.bytesUploaded, sent);
+        EXPECT_EQ(costOf(batch).bytesUploaded, sent);
         for (const std::size_t i : {0, 40, 57, 99})
-        {
-            std::vector<AffineMatrix> expected;
-            Pose::evaluate(*set, instances[i].instruction, instances[i].root, expected);
-            EXPECT_LT(difference(pipeline->readPalette(state(), *set, 0, i), expected), 2e-6) << "instance " << i;
-        }
+            EXPECT_LT(differenceFromTwin(*set, instances[i].instruction, i, instances[i].root), 2e-6) << i;
     }
 }
 
@@ -259,7 +191,6 @@ TEST_F(PosePipelineCostGLTest, batchesByTurnsKeepTheirOwnInputsWithAndWithoutBas
 {
     osg::GLExtensions& gl = *state().get<osg::GLExtensions>();
     const auto baseInstance = gl.glDrawArraysInstancedBaseInstance;
-    PosePipeline* pipeline = PosePipeline::of(state());
     const std::shared_ptr<const AnimationSet> sets[] = {makeRandomSet({2, 30, 8, 5, false, true, true}),
                                                         makeRandomSet({3, 12, 4, 5, false, false, true})};
     const Roots roots[] = {Roots::None, Roots::Own, Roots::One, Roots::Own, Roots::None};
@@ -286,9 +217,7 @@ TEST_F(PosePipelineCostGLTest, batchesByTurnsKeepTheirOwnInputsWithAndWithoutBas
         {
             const PoseInstruction& instruction = step % 2 != 0 ? blended.instruction() : instances[i].instruction;
             const AffineMatrix root = kind == Roots::None ? AffineMatrix() : instances[kind == Roots::Own ? i : 0].root;
-            std::vector<AffineMatrix> expected;
-            Pose::evaluate(*set, instruction, root, expected);
-            EXPECT_LT(difference(pipeline->readPalette(state(), *set, slot, i), expected), 4e-6) << step << ", " << i;
+            EXPECT_LT(differenceFromTwin(*set, instruction, i, root, slot), 4e-6) << step << ", " << i;
         }
     }
     gl.glDrawArraysInstancedBaseInstance = baseInstance;
@@ -306,7 +235,6 @@ void GL_APIENTRY faultyShaderSource(GLuint shader, GLsizei, const GLchar**, cons
 TEST_F(PosePipelineCostGLTest, aPassThatDoesNotCompileLeavesNoPalette)
 {
     const auto set = makeRandomSet({});
-    PosePipeline* pipeline = PosePipeline::of(state());
     osg::GLExtensions* gl = state().get<osg::GLExtensions>();
     for (const PosePipeline::Form form : {PosePipeline::Form::Fused, PosePipeline::Form::Separate})
     {
@@ -335,35 +263,6 @@ TEST_F(PosePipelineCostGLTest, aPassThatDoesNotCompileLeavesNoPalette)
     }
 }
 
-TEST_F(PosePipelineCostGLTest, masksBeyondTheBufferTextureLimitLeaveNoPalette)
-{
-    const auto set = makeRandomSet({});
-    PosePipeline* pipeline = PosePipeline::of(state());
-    PoseBatch plain(set), masked(set);
-    PoseInstruction instruction = instructionAt(*set, 0, 0.5);
-    plain.add(instruction);
-    ASSERT_TRUE(pipeline->evaluate(state(), plain, 0));
-    EXPECT_NE(pipeline->place(*set, 0, 0).texture, 0u);
-    std::mt19937 random(1);
-    addRandomMasks(*set, random);
-    instruction.samples[0].control |= 1u << 16;
-    masked.add(instruction);
-    pipeline->options().maxTexels = 1;
-    EXPECT_FALSE(pipeline->evaluate(state(), masked, 0));
-    EXPECT_EQ(pipeline->place(*set, 0, 0).texture, 0u);
-}
-
-TEST_F(PosePipelineCostGLTest, refusesASetBeyondTheBufferTextureLimit)
-{
-    const auto set = makeRandomSet({});
-    PosePipeline* pipeline = PosePipeline::of(state());
-    pipeline->options().maxTexels = 64;
-    PoseBatch batch(set);
-    batch.add({});
-    EXPECT_FALSE(pipeline->evaluate(state(), batch, 0));
-    EXPECT_EQ(pipeline->place(*set, 0, 0).texture, 0u);
-}
-
 /// A set without clips, whose palette entries take more room than its keyframes.
 std::shared_ptr<const AnimationSet> jointsAlone(const std::vector<Constraint>& constraints, int count)
 {
@@ -375,7 +274,6 @@ std::shared_ptr<const AnimationSet> jointsAlone(const std::vector<Constraint>& c
 
 TEST_F(PosePipelineCostGLTest, aSetThatFillsTheBufferTextureIsTaken)
 {
-    PosePipeline* pipeline = PosePipeline::of(state());
     for (const bool hasClips : {true, false})
     {
         const auto makeSet = [&] { return hasClips ? makeRandomSet({}) : jointsAlone({}, 40); };
@@ -392,7 +290,10 @@ TEST_F(PosePipelineCostGLTest, aSetThatFillsTheBufferTextureIsTaken)
             const osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::WARN);
             osg::setNotifyHandler(log);
             for (int frame = 0; frame < 2; ++frame)
+            {
                 EXPECT_EQ(pipeline->evaluate(state(), batch, 0), room == needed) << needed - room;
+                EXPECT_EQ(pipeline->place(*set, 0, 0).texture != 0u, room == needed);
+            }
             osg::setNotifyHandler(new osg::StandardNotifyHandler);
             const std::string text = "texels (keyframes)";
             EXPECT_EQ(log->text.find(text) != std::string::npos, room < needed) << log->text;
@@ -410,7 +311,6 @@ TEST_F(PosePipelineCostGLTest, masksThatFillTheBufferTextureAreTaken)
     instruction.samples[0].control |= 1u << POSE_SAMPLE_MASK_SHIFT;
     PoseBatch batch(set);
     batch.add(instruction);
-    PosePipeline* pipeline = PosePipeline::of(state());
     ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
     const std::size_t needed = batch.masks().size() * ((set->trackCount() + 3) / 4);
     const osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::WARN);
@@ -419,6 +319,7 @@ TEST_F(PosePipelineCostGLTest, masksThatFillTheBufferTextureAreTaken)
     {
         pipeline->options().maxTexels = room;
         EXPECT_EQ(pipeline->evaluate(state(), batch, 0), room == needed) << needed - room;
+        EXPECT_EQ(pipeline->place(*set, 0, 0).texture != 0u, room == needed) << "not the pose of before";
     }
     osg::setNotifyHandler(new osg::StandardNotifyHandler);
     EXPECT_NE(log->text.find("masks"), std::string::npos);
@@ -431,7 +332,6 @@ TEST_F(PosePipelineCostGLTest, samplesAndTargetsFitTheBufferTextureToo)
     std::vector<Constraint> looks;
     for (int look = 0; look < 8; ++look)
         looks.push_back(LookAt{"look" + std::to_string(look), {"joint0"}});
-    PosePipeline* pipeline = PosePipeline::of(state());
     pipeline->options().maxTexels = 1000;
     for (const bool hasTargets : {false, true})
     {
@@ -445,9 +345,7 @@ TEST_F(PosePipelineCostGLTest, samplesAndTargetsFitTheBufferTextureToo)
             batch.add(instruction);
         const std::size_t texels = hasTargets ? looks.size() * POSE_TEXELS_PER_TARGET : PoseInstruction::maxSamples;
         ASSERT_GT(texels, set->paletteSize() * POSE_TEXELS_PER_MATRIX);
-        const std::uint64_t before = pipeline->getCounters().instancesEvaluated;
-        ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
-        EXPECT_EQ(pipeline->getCounters().instancesEvaluated - before, 400u) << "each in its chunk";
+        EXPECT_EQ(costOf(batch).instancesEvaluated, 400u) << "each in its chunk";
         for (std::size_t i = 0; i < batch.size(); ++i)
             ASSERT_LE(static_cast<std::size_t>(pipeline->place(*set, 0, i).stride) * texels, 1000u) << i;
     }
@@ -455,7 +353,6 @@ TEST_F(PosePipelineCostGLTest, samplesAndTargetsFitTheBufferTextureToo)
 
 TEST_F(PosePipelineCostGLTest, forgetsSetsThatNobodyUses)
 {
-    PosePipeline* pipeline = PosePipeline::of(state());
     const AnimationSet* gone = nullptr;
     {
         const auto set = makeRandomSet({});
@@ -467,6 +364,118 @@ TEST_F(PosePipelineCostGLTest, forgetsSetsThatNobodyUses)
     }
     pipeline->flushAllDeletedGLObjects();
     EXPECT_EQ(pipeline->place(*gone, 0, 0).texture, 0u);
+}
+
+/// What the pose side creates in a context: deleted in the end, made again afterwards.
+class GlObjectsOfPosesGLTest : public PoseGLTest
+{
+protected:
+    /// The number of buffers, textures, programs, vertex arrays and queries.
+    int objects()
+    {
+        const osg::GLExtensions& gl = *state().get<osg::GLExtensions>();
+        int count = 0;
+        for (GLuint name = 1; name < 3000; ++name)
+            count += (gl.glIsBuffer(name) != 0) + (glIsTexture(name) != 0) + (gl.glIsProgram(name) != 0) +
+                     (gl.glIsVertexArray(name) != 0) + (gl.glIsQuery(name) != 0);
+        return count;
+    }
+};
+
+TEST_F(GlObjectsOfPosesGLTest, allThatAPipelineHasMadeIsDeletedAndMadeAgain)
+{
+    const int before = objects();
+    const auto plain = makeRandomSet({});
+    const std::string first = plain->skeleton().joint(0).name, second = plain->skeleton().joint(3).name;
+    const auto set = plain->withConstraints({LookAt{"first", {first}}, LookAt{"second", {second}}}).value();
+    std::mt19937 random(5);
+    addRandomMasks(*set, random);
+    const auto pose = std::make_shared<JointPose>(set);
+    ASSERT_TRUE(pose->setTranslation(1, glm::vec3(1, 2, 3)));
+    for (int round = 0; round < 2; ++round)
+        for (const PosePipeline::Form form : {PosePipeline::Form::Fused, PosePipeline::Form::Separate})
+            for (const bool isLooking : {false, true})
+            {
+                SCOPED_TRACE(testing::Message() << "round " << round << (isLooking ? ", looking" : ""));
+                PoseInstruction stack = instructionAt(*set, 0, 0.5);
+                stack.samples[0].control |= 1u << 16;
+                stack.samples[1] = {0, 0.0f, 0.5f, 16u | 8u};
+                stack.sampleCount = 2;
+                stack.poses.push_back(pose);
+                if (isLooking) stack.targets.assign(2, {{30, 20, 10}, 1.0f, {0, 0, 0}, 0.0f, {0, 0, 0, 0}});
+                pipeline->options().form = form;
+                PoseBatch batch(set);
+                AffineMatrix aside;
+                aside.rows[1].w = 2.0f;
+                for (int instance = 0; instance < 5; ++instance)
+                    batch.add(stack, aside);
+                batch.setTint(2, 0xff0000ffu);
+                ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
+                ASSERT_LE(differenceFromTwin(*set, stack, 4, aside), 1e-5);
+                if (!isLooking) continue;
+                EXPECT_GT(objects(), before + 10);
+                pipeline->deleteAllGLObjects();
+                EXPECT_EQ(objects(), before);
+                EXPECT_EQ(pipeline->place(*set, 0, 0).texture, 0u);
+            }
+}
+
+TEST_F(GlObjectsOfPosesGLTest, listsOfInstancesKeepTheirContent)
+{
+    osg::GLExtensions& gl = *state().get<osg::GLExtensions>();
+    InstanceTransformBuffers& lists = InstanceTransformBuffers::of(state());
+    const int before = objects();
+    for (int round = 0; round < 2; ++round)
+    {
+        for (const std::uint64_t serial : {1, 2, 1, 3, 1, 2, 3, 1})
+        {
+            std::vector<InstanceTransform> transforms(serial);
+            for (InstanceTransform& transform : transforms)
+                transform.pose = static_cast<float>(serial);
+            const BufferTexture& buffer = lists.buffer(serial, transforms);
+            InstanceTransform found;
+            gl.glBindBuffer(GL_ARRAY_BUFFER, buffer.buffer());
+            gl.glGetBufferSubData(GL_ARRAY_BUFFER, static_cast<GLintptr>((serial - 1) * sizeof found), sizeof found,
+                                  &found);
+            gl.glBindBuffer(GL_ARRAY_BUFFER, 0);
+            EXPECT_EQ(found.pose, static_cast<float>(serial)) << "round " << round;
+        }
+        lists.deleteAllGLObjects();
+        EXPECT_EQ(objects(), before);
+    }
+}
+
+TEST_F(GlObjectsOfPosesGLTest, aTimerMeasuresItsFrames)
+{
+    const int before = objects();
+    FeedbackTimer& timer = FeedbackTimer::of(state());
+    const auto set = makeRandomSet({});
+    const auto seconds = []
+    { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); };
+    for (int round = 0; round < 2; ++round)
+    {
+        const double begin = seconds();
+        for (unsigned int frame = 40; frame < 60; ++frame) // more than there may be unfinished
+        {
+            PoseBatch batch(set);
+            batch.add(instructionAt(*set, 0, 0.01 * frame + round));
+            timer.begin();
+            ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
+            timer.end(frame);
+        }
+        glFinish();
+        const std::vector<FeedbackTimer::Measured> measured = timer.takeFinished();
+        ASSERT_EQ(measured.size(), 16u);
+        double sum = 0.0;
+        for (std::size_t i = 0; i < measured.size(); sum += measured[i++].seconds)
+            EXPECT_EQ(measured[i].frameNumber, 40 + i);
+        EXPECT_GT(sum, 1e-7);
+        EXPECT_LE(sum, seconds() - begin);
+        EXPECT_TRUE(timer.takeFinished().empty()) << "taken";
+    }
+    timer.deleteAllGLObjects();
+    pipeline->deleteAllGLObjects();
+    EXPECT_EQ(objects(), before);
 }
 
 } // namespace

@@ -20,7 +20,7 @@
 #include <osgUtil/GLObjectsVisitor>
 #include <osgUtil/IncrementalCompileOperation>
 
-// Snippets of the guides; tests/house/SnippetTest.cpp compares these statements with them.
+// Snippets of the guides; tests/house/GuidesTest.cpp compares these statements with them.
 
 namespace osgGpuAnimation
 {

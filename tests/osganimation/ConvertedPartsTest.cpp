@@ -64,9 +64,6 @@ TEST(ConvertedPartsTest, mirroredBonesStayMirrored)
 TEST(ConvertedPartsTest, theLargestInfluencesRemain)
 {
     const SmallRig rig;
-    osg::ref_ptr<osgAnimation::RigGeometry> coat = new osgAnimation::RigGeometry;
-    coat->setName("coat");
-    coat->setSourceGeometry(triangle("coat"));
     osg::ref_ptr<osgAnimation::VertexInfluenceMap> map = new osgAnimation::VertexInfluenceMap;
     for (int i = 0; i < 10; ++i)
     {
@@ -76,12 +73,8 @@ TEST(ConvertedPartsTest, theLargestInfluencesRemain)
         rig.upper->addChild(bone);
         for (unsigned int vertex = 0; vertex < 3; ++vertex)
             (*map)[name].emplace_back(vertex, static_cast<float>(i + 1));
-        (*map)[name].setName(name);
     }
-    coat->setInfluenceMap(map);
-    osg::ref_ptr<osg::Geode> geode = new osg::Geode;
-    geode->addDrawable(coat);
-    rig.skeleton->addChild(geode);
+    rig.skeleton->addChild(SmallRig::rigged("coat", triangle("coat"), *map));
     const osganimation::Conversion made = osganimation::convertOsgAnimation(*rig.root);
     ASSERT_EQ(made.characters.size(), 1u);
     EXPECT_EQ(made.warnings, std::vector<std::string>{"mesh \"coat\": 3 vertices have more than 8 influences; the 8 "
@@ -125,19 +118,9 @@ TEST(ConvertedPartsTest, statesMasksAndPlacesComeAlong)
     rig.lower->addChild(tip);
     const osg::ref_ptr<osg::Geometry> source = triangle("source");
     source->getOrCreateStateSet()->setAttributeAndModes(new osg::BlendFunc);
-    const osg::ref_ptr<osgAnimation::RigGeometry> sleeve = new osgAnimation::RigGeometry;
-    sleeve->setName("cuff");
-    sleeve->setSourceGeometry(source);
-    sleeve->setStateSet(nullptr);
-    osg::ref_ptr<osgAnimation::VertexInfluenceMap> map = new osgAnimation::VertexInfluenceMap;
-    for (unsigned int vertex = 0; vertex < 3; ++vertex)
-        (*map)["upper"].emplace_back(vertex, 1.0f);
-    (*map)["upper"].setName("upper");
-    sleeve->setInfluenceMap(map);
-    const osg::ref_ptr<osg::Geode> sleeveGeode = new osg::Geode;
-    sleeveGeode->addDrawable(sleeve);
-    rig.skeleton->addChild(sleeveGeode);
-
+    const osg::ref_ptr<osg::Geode> cuff = SmallRig::rigged("cuff", source, "upper");
+    cuff->getDrawable(0)->setStateSet(nullptr);
+    rig.skeleton->addChild(cuff);
     const osg::ref_ptr<AnimatedCharacter> character = converted(rig);
     ASSERT_TRUE(character);
     EXPECT_EQ(character->getNodeMask(), 0x6u);
@@ -173,15 +156,10 @@ TEST(ConvertedPartsTest, callbacksOfMaterialsStay)
 // Targets of method NORMALIZED are whole shapes: equal ones change nothing.
 TEST(ConvertedPartsTest, equalShapesHaveNoDeltas)
 {
-    osg::ref_ptr<osg::Geometry> shapes[2];
-    for (osg::ref_ptr<osg::Geometry>& shape : shapes)
+    osg::ref_ptr<osg::Geometry> shapes[] = {triangle("base"), triangle("target")};
+    for (const osg::ref_ptr<osg::Geometry>& shape : shapes)
     {
-        shape = new osg::Geometry;
-        osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array;
-        for (const osg::Vec3& vertex : {osg::Vec3(0, 0, 0), osg::Vec3(1, 0, 0), osg::Vec3(0, 0, 1)})
-            vertices->push_back(vertex);
-        shape->setVertexArray(vertices);
-        shape->setNormalArray(new osg::Vec3Array(osg::Array::BIND_PER_VERTEX, 3));
+        shape->setNormalArray(new osg::Vec3Array(3), osg::Array::BIND_PER_VERTEX);
         for (osg::Vec3& normal : static_cast<osg::Vec3Array&>(*shape->getNormalArray()))
             normal.set(0, -1, 0);
     }
@@ -193,6 +171,78 @@ TEST(ConvertedPartsTest, equalShapesHaveNoDeltas)
     ASSERT_TRUE((*targets)[0].normals);
     for (const osg::Vec3& normal : *(*targets)[0].normals)
         EXPECT_EQ(normal, osg::Vec3());
+}
+
+/// Bones in one another below a bone; a bone is `times` times the child of the one above. Taken apart one by one.
+struct BoneChain
+{
+    BoneChain(osgAnimation::Bone& top, std::size_t count, unsigned int times)
+    {
+        bones.push_back(&top);
+        for (std::size_t i = 0; i < count; ++i)
+            bones.push_back(new osgAnimation::Bone("bone " + std::to_string(i)));
+        for (std::size_t i = count; i > 0; --i) // the innermost first: counts of children pass up one level
+            for (unsigned int time = 0; time < times; ++time)
+                bones[i - 1]->addChild(bones[i]);
+    }
+    ~BoneChain()
+    {
+        for (; bones.size() > 1; bones.pop_back())
+            bones[bones.size() - 2]->removeChild(bones.back());
+    }
+    std::vector<osg::ref_ptr<osg::Group>> bones;
+};
+
+TEST(BrokenSkeletonsTest, theyStayAsTheyAre)
+{
+    const struct
+    {
+        const char* name;
+        std::size_t depth;
+        unsigned int times;
+        const char* fault;
+    } cases[] = {{"30,000 nested bones", 30'000, 1, " nodes above it"},
+                 {"millions of paths", 22, 2, "more than 1000000 paths lead to its groups"}};
+    for (const auto& each : cases)
+    {
+        SCOPED_TRACE(each.name);
+        const SmallRig rig;
+        const BoneChain chain(*rig.lower, each.depth, each.times);
+        const osganimation::Conversion made = osganimation::convertOsgAnimation(*rig.root);
+        EXPECT_TRUE(made.characters.empty());
+        ASSERT_FALSE(made.warnings.empty());
+        EXPECT_NE(made.warnings.back().find(each.fault), std::string::npos) << made.warnings.back();
+        EXPECT_NE(made.warnings.back().find("it stays as it is"), std::string::npos) << made.warnings.back();
+    }
+}
+
+TEST(BrokenSkeletonsTest, aBoneBelowItselfIsNamed)
+{
+    const SmallRig rig;
+    rig.lower->addChild(rig.upper);
+    const osganimation::Conversion made = osganimation::convertOsgAnimation(*rig.root);
+    EXPECT_TRUE(made.characters.empty());
+    EXPECT_EQ(made.warnings,
+              std::vector<std::string>{"skeleton \"arm\": node \"upper\" is below itself; it stays as it is"});
+    rig.lower->removeChild(rig.upper);
+}
+
+TEST(BrokenSkeletonsTest, aMissingPrimitiveSetCostsItself)
+{
+    const SmallRig rig;
+    const osg::ref_ptr<osg::Geometry> geometry = triangle("odd");
+    geometry->getPrimitiveSetList().insert(geometry->getPrimitiveSetList().begin(), nullptr);
+    const osg::ref_ptr<osg::Geode> geode = new osg::Geode;
+    geode->addDrawable(geometry);
+    rig.lower->addChild(geode);
+    const osganimation::Conversion made = osganimation::convertOsgAnimation(*rig.root);
+    ASSERT_EQ(made.characters.size(), 1u);
+    const SkinnedGeometry* const mesh = meshNamed(*made.characters[0], "odd");
+    ASSERT_TRUE(mesh);
+    EXPECT_EQ(mesh->getNumPrimitiveSets(), 1u);
+    EXPECT_EQ(made.warnings,
+              std::vector<std::string>{"mesh \"odd\": a primitive set is missing or has indices beyond its "
+                                       "vertices; left out"});
 }
 
 } // namespace

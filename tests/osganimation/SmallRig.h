@@ -24,6 +24,29 @@ namespace osgGpuAnimation
 class SmallRig
 {
 public:
+    /// A mesh below a geode, skinned by the bones of the map.
+    static osg::ref_ptr<osg::Geode> rigged(const std::string& name, osg::Geometry* source,
+                                           osgAnimation::VertexInfluenceMap& map)
+    {
+        for (auto& [bone, influence] : map)
+            influence.setName(bone);
+        osg::ref_ptr<osgAnimation::RigGeometry> rig = new osgAnimation::RigGeometry;
+        rig->setName(name);
+        rig->setSourceGeometry(source);
+        rig->setInfluenceMap(&map);
+        osg::ref_ptr<osg::Geode> geode = new osg::Geode;
+        geode->addDrawable(rig);
+        return geode;
+    }
+    /// All vertices follow one bone.
+    static osg::ref_ptr<osg::Geode> rigged(const std::string& name, osg::Geometry* source, const std::string& bone)
+    {
+        const osg::ref_ptr<osgAnimation::VertexInfluenceMap> map = new osgAnimation::VertexInfluenceMap;
+        for (unsigned int vertex = 0; vertex < source->getVertexArray()->getNumElements(); ++vertex)
+            (*map)[bone].emplace_back(vertex, 1.0f);
+        return rigged(name, source, *map);
+    }
+
     SmallRig()
     {
         skeleton->setName("arm");
@@ -81,9 +104,6 @@ private:
 
     void addMeshes()
     {
-        osg::ref_ptr<osgAnimation::RigGeometry> rig = new osgAnimation::RigGeometry;
-        rig->setName("sleeve");
-        rig->setSourceGeometry(ribbon("sleeve"));
         osg::ref_ptr<osgAnimation::VertexInfluenceMap> map = new osgAnimation::VertexInfluenceMap;
         for (unsigned int vertex = 0; vertex < 10; ++vertex)
         {
@@ -92,11 +112,7 @@ private:
             if (share < 1.0f) (*map)["upper"].emplace_back(vertex, 2.0f - 2.0f * share);
             if (share > 0.0f) (*map)["lower"].emplace_back(vertex, 2.0f * share);
         }
-        for (auto& [name, influence] : *map)
-            influence.setName(name);
-        rig->setInfluenceMap(map);
-        osg::ref_ptr<osg::Geode> geode = new osg::Geode;
-        geode->addDrawable(rig);
+        const osg::ref_ptr<osg::Geode> geode = rigged("sleeve", ribbon("sleeve"), *map);
         osg::ref_ptr<osg::Material> red = new osg::Material;
         red->setDiffuse(osg::Material::FRONT_AND_BACK, osg::Vec4(0.8f, 0.1f, 0.1f, 1.0f));
         geode->getOrCreateStateSet()->setAttribute(red);

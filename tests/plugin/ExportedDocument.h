@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "gltf/Export.h"
 #include "plugin/GlbParts.h"
+#include "plugin/RoundTrip.h"
 
-#include <gtest/gtest.h>
 #include <osg/Geometry>
 
 #include <string>
@@ -16,12 +15,8 @@ namespace osgGpuAnimation::gltf
 /// warnings: those that are expected.
 inline GlbParts exported(const osg::Node& scene, const std::vector<std::string>& warnings = {})
 {
-    Messages messages;
-    Report report(messages);
-    const Result<std::string> glb = exportModel(scene, report);
-    EXPECT_TRUE(glb) << glb.error().message;
-    EXPECT_EQ(messages.warnings, warnings);
-    return glb ? GlbParts(glb.value()) : GlbParts();
+    const std::string glb = glbOf(scene, warnings);
+    return glb.empty() ? GlbParts() : GlbParts(glb);
 }
 
 /// A triangle in the x-z plane.

@@ -106,34 +106,37 @@ TEST(ExportedGeometryTest, arraysOfVerticesKeepTheirPlacesAndDirections)
     EXPECT_EQ(bounds["max"], Json({1, 0, 1}));
 }
 
+/// A position of two components has z = 0; what is too long is cut to the vertices.
+TEST(ExportedGeometryTest, arraysOfOtherKindsAndLengthsAreMended)
+{
+    const osg::ref_ptr<osg::Geometry> geometry = plainTriangle("flat");
+    const osg::Vec2 corners[] = {{0, 0}, {1, 0}, {0, 1}};
+    geometry->setVertexArray(new osg::Vec2Array(3, corners));
+    geometry->setNormalArray(new osg::Vec3bArray(3), osg::Array::BIND_PER_VERTEX);
+    geometry->setTexCoordArray(0, new osg::Vec2Array(osg::Array::BIND_PER_VERTEX, 5));
+    const GlbParts made =
+        exported(*geometry, {"mesh \"flat\": NORMAL is an array of a kind that is not read (Vec3bArray); left out"});
+    expectNumbers(made.attribute("POSITION"), {0, 0, 0, 1, 0, 0, 0, 1, 0});
+    EXPECT_EQ(made.attribute("TEXCOORD_0").size(), 6u);
+    EXPECT_EQ(made.json["meshes"][0]["primitives"][0]["attributes"].size(), 2u);
+}
+
 TEST(ExportedGeometryTest, pointsLinesAndTrianglesAreListsOfTheirOwn)
 {
     const osg::ref_ptr<osg::Geometry> geometry = plainTriangle("mixed");
-    const osg::Vec3 corners[] = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {1, 0, 1}};
-    geometry->setVertexArray(new osg::Vec3Array(4, corners));
-    geometry->setPrimitiveSet(0, new osg::DrawArrays(GL_TRIANGLE_STRIP, 0, 4));
-    const unsigned short lines[] = {3, 1, 0, 2}, beyond[] = {0, 4};
+    geometry->setVertexArray(new osg::Vec3Array(4));
+    const unsigned short triangle[] = {2, 1, 3}, lines[] = {3, 1, 0, 2};
+    geometry->setPrimitiveSet(0, new osg::DrawElementsUShort(GL_TRIANGLES, 3, triangle));
     geometry->addPrimitiveSet(new osg::DrawElementsUShort(GL_LINES, 4, lines));
     geometry->addPrimitiveSet(new osg::DrawArrays(GL_POINTS, 2, 1));
-    geometry->addPrimitiveSet(new osg::DrawElementsUShort(GL_LINE_STRIP, 2, beyond));
-    const GlbParts made =
-        exported(*geometry, {"mesh \"mixed\": indices beyond its vertices, or too few; a part is left out"});
-    const std::pair<int, Numbers> expected[] = {{4, {0, 1, 2, 2, 1, 3}}, {1, {3, 1, 0, 2}}, {0, {2}}};
+    const GlbParts made = exported(*geometry);
+    const std::pair<int, Numbers> expected[] = {{4, {2, 1, 3}}, {1, {3, 1, 0, 2}}, {0, {2}}};
     const Json& primitives = made.json["meshes"][0]["primitives"];
     ASSERT_EQ(primitives.size(), 3u);
     for (std::size_t i = 0; i < 3; ++i)
     {
         EXPECT_EQ(primitives[i]["mode"], expected[i].first);
-        Numbers found = made.numbers(primitives[i]["indices"]);
-        if (i == 0) // the winding counts, not the first corner
-            for (std::size_t corner = 0; corner < found.size(); corner += 3)
-                std::rotate(found.begin() + std::ptrdiff_t(corner),
-                            std::min_element(found.begin() + std::ptrdiff_t(corner),
-                                             found.begin() + std::ptrdiff_t(corner + 3)),
-                            found.begin() + std::ptrdiff_t(corner + 3));
-        Numbers wanted = expected[i].second;
-        if (i == 0) wanted = {0, 1, 2, 1, 3, 2};
-        EXPECT_EQ(found, wanted) << i;
+        EXPECT_EQ(made.numbers(primitives[i]["indices"]), expected[i].second) << i;
     }
 }
 
@@ -301,25 +304,6 @@ TEST(ExportedGeometryTest, lightsAndCamerasKeepTheirNumbersAndPlaces)
     ASSERT_EQ(json["cameras"].size(), 1u);
     EXPECT_EQ(json["cameras"][0]["orthographic"]["ymag"], 3.0) << "half the height";
     EXPECT_EQ(json["cameras"][0]["orthographic"]["xmag"], 3.0);
-
-    const osg::ref_ptr<osg::Group> read =
-        throughGlb(*scene, {"light \"hidden\": it is hidden; left out",
-                            "transform \"overlay\": it has a reference frame of its own; left out"});
-    ASSERT_TRUE(read);
-    struct Finder : osg::NodeVisitor
-    {
-        Finder() : NodeVisitor(TRAVERSE_ALL_CHILDREN) {}
-        void apply(osg::CameraView& view) override
-        {
-            place = osg::Vec3d() * osg::computeLocalToWorld(getNodePath());
-            view.getUserValue(orthographicHeightName, height);
-        }
-        osg::Vec3d place;
-        double height = 0.0;
-    } finder;
-    read->accept(finder);
-    EXPECT_LT((finder.place - osg::Vec3d(1, 2, 13)).length(), 1e-6);
-    EXPECT_NEAR(finder.height, 6.0, 1e-6);
 }
 
 TEST(ExportedGeometryTest, attachmentsKeepTheirOffset)
@@ -338,15 +322,15 @@ TEST(ExportedGeometryTest, attachmentsKeepTheirOffset)
     hand->addChild(ring);
     findCharacter(*model.root)->addChild(hand);
     const Json json = exported(*model.root).json;
-    bool isThere = false;
+    std::size_t rings = 0;
     for (const Json& node : json["nodes"])
-        if (node.contains("mesh") && json["meshes"][node["mesh"].get<std::size_t>()].value("name", "") == "ring")
-        {
-            isThere = true;
-            EXPECT_EQ(node["translation"], Json({0, 0, 7}));
-            EXPECT_NEAR(node["rotation"][2].get<double>(), std::sqrt(0.5), 1e-6);
-        }
-    EXPECT_TRUE(isThere);
+    {
+        if (!node.contains("mesh") || json["meshes"][node["mesh"].get<std::size_t>()]["name"] != "ring") continue;
+        EXPECT_EQ(node["translation"], Json({0, 0, 7}));
+        EXPECT_NEAR(node["rotation"][2].get<double>(), std::sqrt(0.5), 1e-6);
+        ++rings;
+    }
+    EXPECT_EQ(rings, 1u);
 }
 
 } // namespace

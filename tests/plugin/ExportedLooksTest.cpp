@@ -22,28 +22,15 @@ namespace
 using Json = nlohmann::json;
 
 /// Equal but for the rounding of floats.
-void expectNear(const Json& found, const Json& expected, const std::string& place)
+void expectNear(const Json& found, const Json& expected)
 {
-    if (found.is_number() && expected.is_number())
-    {
-        EXPECT_NEAR(found.get<double>(), expected.get<double>(), 1e-5) << place;
-        return;
-    }
-    ASSERT_EQ(found.type(), expected.type()) << place << ": " << found;
-    ASSERT_EQ(found.size(), expected.size()) << place << ": " << found;
-    if (!found.is_structured())
-    {
-        EXPECT_EQ(found, expected) << place;
-        return;
-    }
-    for (const auto& [key, value] : expected.items())
-    {
-        const bool isThere = found.is_array() || found.contains(key);
-        EXPECT_TRUE(isThere) << place << " lacks " << key << ": " << found;
-        if (isThere)
-            expectNear(found.is_array() ? found[static_cast<std::size_t>(std::stoul(key))] : found[key], value,
-                       place + '/' + key);
-    }
+    const Json flat = found.flatten(), wanted = expected.flatten();
+    EXPECT_EQ(flat.size(), wanted.size()) << found;
+    for (const auto& [place, value] : wanted.items())
+        if (value.is_number() && flat.contains(place))
+            EXPECT_NEAR(flat[place].get<double>(), value.get<double>(), 1e-5) << place;
+        else
+            EXPECT_EQ(flat.value(place, Json("nothing")), value) << place;
 }
 
 /// The only material of a triangle with texture coordinates of all three sets.
@@ -61,97 +48,115 @@ Json materialOf(const std::function<void(osg::StateSet&)>& setUp, bool hasCoordi
     return made.json["materials"][0];
 }
 
+using SetUp = std::function<void(osg::StateSet&)>;
+constexpr auto bothFaces = osg::Material::FRONT_AND_BACK;
+
+/// A white material of OSG, changed.
+SetUp fixed(const std::function<void(osg::Material&)>& change)
+{
+    return [change](osg::StateSet& state)
+    {
+        osg::ref_ptr<osg::Material> made = new osg::Material;
+        made->setDiffuse(bothFaces, osg::Vec4(1, 1, 1, 1));
+        change(*made);
+        state.setAttribute(made);
+    };
+}
+
+SetUp pbr(const std::function<void(PbrMaterial&)>& change)
+{
+    return [change](osg::StateSet& state)
+    {
+        PbrMaterial material;
+        change(material);
+        applyPbrMaterial(state, material);
+    };
+}
+
+SetUp mode(GLenum name, bool isOn)
+{
+    return [=](osg::StateSet& state)
+    { state.setMode(name, isOn ? osg::StateAttribute::ON : osg::StateAttribute::OFF); };
+}
+
+SetUp alphaTest(osg::StateAttribute::GLModeValue value)
+{
+    return [value](osg::StateSet& state)
+    { state.setAttributeAndModes(new osg::AlphaFunc(osg::AlphaFunc::GREATER, 0.25f), value); };
+}
+
+SetUp both(const SetUp& first, const SetUp& second)
+{
+    return [=](osg::StateSet& state)
+    {
+        first(state);
+        second(state);
+    };
+}
+
+void shine(osg::Material& material, float blue)
+{
+    material.setSpecular(bothFaces, osg::Vec4(0, 0, blue, 1));
+    material.setShininess(bothFaces, 30.0f);
+}
+
+void setFactors(PbrMaterial& material)
+{
+    material.baseColor.set(0.1f, 0.2f, 0.3f, 0.4f);
+    material.metallic = 0.6f;
+    material.roughness = 0.7f;
+    material.emissive.set(0.5f, 0.25f, 0);
+    material.emissiveStrength = 3.0f;
+    material.specularColor.set(0.02f, 0.04f, 0.08f);
+    material.specular = 0.5f;
+    material.clearcoat = 0.8f;
+    material.clearcoatRoughness = 0.3f;
+    material.sheenColor.set(0, 0.5f, 0.25f);
+    material.sheenRoughness = 0.9f;
+}
+
+void setSpecularGlossiness(PbrMaterial& material)
+{
+    material.baseColor.set(0.1f, 0.2f, 0.3f, 0.4f);
+    material.isSpecularGlossiness = true;
+    material.specularColor.set(0.5f, 0.25f, 0.125f);
+    material.roughness = 0.2f;
+}
+
 struct LookCase
 {
     const char* name;
-    std::function<void(osg::StateSet&)> setUp;
+    SetUp setUp;
     const char* expected; ///< changes of the material of a state without anything
 };
 
-osg::Material& colorsOf(osg::StateSet& state)
-{
-    osg::ref_ptr<osg::Material> made = new osg::Material;
-    made->setDiffuse(osg::Material::FRONT_AND_BACK, osg::Vec4(1, 1, 1, 1));
-    state.setAttribute(made);
-    return *made;
-}
+constexpr auto on = osg::StateAttribute::ON, off = osg::StateAttribute::OFF;
 
 /// IEC 61966-2-1: 0.5 as displayed is 0.2140411 in linear light, 0.2 is 0.0331048.
-const LookCase fixedLooks[] = {
+const LookCase looks[] = {
     {"nothing", [](osg::StateSet&) {}, "{}"},
-    {"a colour as it is displayed",
-     [](osg::StateSet& state)
-     { colorsOf(state).setDiffuse(osg::Material::FRONT_AND_BACK, osg::Vec4(0.5f, 0.2f, 0, 0.25f)); },
+    {"a colour as it is displayed", fixed([](auto& m) { m.setDiffuse(bothFaces, osg::Vec4(0.5f, 0.2f, 0, 0.25f)); }),
      R"({"pbrMetallicRoughness": {"baseColorFactor": [0.2140411, 0.0331048, 0, 0.25]}})"},
-    {"emission",
-     [](osg::StateSet& state)
-     { colorsOf(state).setEmission(osg::Material::FRONT_AND_BACK, osg::Vec4(0, 0.5f, 0.2f, 1)); },
+    {"emission", fixed([](auto& m) { m.setEmission(bothFaces, osg::Vec4(0, 0.5f, 0.2f, 1)); }),
      R"({"emissiveFactor": [0, 0.2140411, 0.0331048]})"},
-    {"a highlight of exponent 30: roughness^4 = 2 / 32",
-     [](osg::StateSet& state)
-     {
-         osg::Material& shining = colorsOf(state);
-         shining.setSpecular(osg::Material::FRONT_AND_BACK, osg::Vec4(0, 0, 0.1f, 1));
-         shining.setShininess(osg::Material::FRONT_AND_BACK, 30.0f);
-     },
+    {"a highlight of exponent 30: roughness^4 = 2 / 32", fixed([](auto& m) { shine(m, 0.1f); }),
      R"({"pbrMetallicRoughness": {"roughnessFactor": 0.5}})"},
-    {"an exponent without a highlight",
-     [](osg::StateSet& state)
-     {
-         osg::Material& dull = colorsOf(state);
-         dull.setSpecular(osg::Material::FRONT_AND_BACK, osg::Vec4(0, 0, 0, 1));
-         dull.setShininess(osg::Material::FRONT_AND_BACK, 30.0f);
-     },
-     "{}"},
-    {"the material's name", [](osg::StateSet& state) { colorsOf(state).setName("brick"); }, R"({"name": "brick"})"},
+    {"an exponent without a highlight", fixed([](auto& m) { shine(m, 0.0f); }), "{}"},
+    {"the material's name", fixed([](auto& m) { m.setName("brick"); }), R"({"name": "brick"})"},
     {"the state's name counts more",
-     [](osg::StateSet& state)
-     {
-         colorsOf(state).setName("brick");
-         state.setName("wall");
-     },
-     R"({"name": "wall"})"},
-    {"culled back faces", [](osg::StateSet& state) { state.setMode(GL_CULL_FACE, osg::StateAttribute::ON); },
-     R"({"doubleSided": null})"},
-    {"blending", [](osg::StateSet& state) { state.setMode(GL_BLEND, osg::StateAttribute::ON); },
+     both(fixed([](auto& m) { m.setName("brick"); }), [](auto& s) { s.setName("wall"); }), R"({"name": "wall"})"},
+    {"culled back faces", mode(GL_CULL_FACE, true), R"({"doubleSided": null})"},
+    {"blending", mode(GL_BLEND, true), R"({"alphaMode": "BLEND"})"},
+    {"blending that is off", mode(GL_BLEND, false), "{}"},
+    {"the bin of transparent surfaces", [](auto& s) { s.setRenderingHint(osg::StateSet::TRANSPARENT_BIN); },
      R"({"alphaMode": "BLEND"})"},
-    {"blending that is off", [](osg::StateSet& state) { state.setMode(GL_BLEND, osg::StateAttribute::OFF); }, "{}"},
-    {"the bin of transparent surfaces",
-     [](osg::StateSet& state) { state.setRenderingHint(osg::StateSet::TRANSPARENT_BIN); }, R"({"alphaMode": "BLEND"})"},
-    {"an alpha test",
-     [](osg::StateSet& state) { state.setAttributeAndModes(new osg::AlphaFunc(osg::AlphaFunc::GREATER, 0.25f)); },
+    {"an alpha test", alphaTest(on), R"({"alphaMode": "MASK", "alphaCutoff": 0.25})"},
+    {"an alpha test that is off", alphaTest(off), "{}"},
+    {"the alpha test counts more than blending", both(alphaTest(on), mode(GL_BLEND, true)),
      R"({"alphaMode": "MASK", "alphaCutoff": 0.25})"},
-    {"an alpha test that is off",
-     [](osg::StateSet& state)
-     { state.setAttributeAndModes(new osg::AlphaFunc(osg::AlphaFunc::GREATER, 0.25f), osg::StateAttribute::OFF); },
-     "{}"},
-    {"the alpha test counts more than blending",
-     [](osg::StateSet& state)
-     {
-         state.setAttributeAndModes(new osg::AlphaFunc(osg::AlphaFunc::GREATER, 0.25f));
-         state.setMode(GL_BLEND, osg::StateAttribute::ON);
-     },
-     R"({"alphaMode": "MASK", "alphaCutoff": 0.25})"},
-    {"no lighting", [](osg::StateSet& state) { state.setMode(GL_LIGHTING, osg::StateAttribute::OFF); },
-     R"({"extensions": {"KHR_materials_unlit": {}}})"},
-    {"lighting", [](osg::StateSet& state) { state.setMode(GL_LIGHTING, osg::StateAttribute::ON); }, "{}"},
-    {"PBR: factors",
-     [](osg::StateSet& state)
-     {
-         PbrMaterial material;
-         material.baseColor.set(0.1f, 0.2f, 0.3f, 0.4f);
-         material.metallic = 0.6f;
-         material.roughness = 0.7f;
-         material.emissive.set(0.5f, 0.25f, 0);
-         material.emissiveStrength = 3.0f;
-         material.specularColor.set(0.02f, 0.04f, 0.08f);
-         material.specular = 0.5f;
-         material.clearcoat = 0.8f;
-         material.clearcoatRoughness = 0.3f;
-         material.sheenColor.set(0, 0.5f, 0.25f);
-         material.sheenRoughness = 0.9f;
-         applyPbrMaterial(state, material);
-     },
+    {"no lighting", mode(GL_LIGHTING, false), R"({"extensions": {"KHR_materials_unlit": {}}})"},
+    {"lighting", mode(GL_LIGHTING, true), "{}"},
+    {"PBR: factors", pbr(setFactors),
      R"({"pbrMetallicRoughness": {"baseColorFactor": [0.1, 0.2, 0.3, 0.4], "metallicFactor": 0.6,
          "roughnessFactor": 0.7}, "emissiveFactor": [0.5, 0.25, 0], "extensions": {
          "KHR_materials_emissive_strength": {"emissiveStrength": 3},
@@ -159,24 +164,9 @@ const LookCase fixedLooks[] = {
          "KHR_materials_clearcoat": {"clearcoatFactor": 0.8, "clearcoatRoughnessFactor": 0.3},
          "KHR_materials_sheen": {"sheenColorFactor": [0, 0.5, 0.25], "sheenRoughnessFactor": 0.9}}})"},
     {"PBR: what transmits light is drawn by blending, but not BLEND",
-     [](osg::StateSet& state)
-     {
-         PbrMaterial material;
-         material.metallic = 0.0f;
-         material.transmission = 0.75f;
-         applyPbrMaterial(state, material);
-     },
+     pbr([](auto& m) { m.metallic = 0.0f, m.transmission = 0.75f; }),
      R"({"extensions": {"KHR_materials_transmission": {"transmissionFactor": 0.75}}})"},
-    {"PBR: specular and glossiness",
-     [](osg::StateSet& state)
-     {
-         PbrMaterial material;
-         material.baseColor.set(0.1f, 0.2f, 0.3f, 0.4f);
-         material.isSpecularGlossiness = true;
-         material.specularColor.set(0.5f, 0.25f, 0.125f);
-         material.roughness = 0.2f;
-         applyPbrMaterial(state, material);
-     },
+    {"PBR: specular and glossiness", pbr(setSpecularGlossiness),
      R"({"pbrMetallicRoughness": null, "extensions": {"KHR_materials_pbrSpecularGlossiness": {
          "diffuseFactor": [0.1, 0.2, 0.3, 0.4], "specularFactor": [0.5, 0.25, 0.125], "glossinessFactor": 0.8}}})"},
 };
@@ -185,12 +175,12 @@ TEST(ExportedLooksTest, statesBecomeMaterials)
 {
     const Json plain = Json::parse(R"({"doubleSided": true, "pbrMetallicRoughness": {
         "baseColorFactor": [1, 1, 1, 1], "metallicFactor": 0, "roughnessFactor": 1}})");
-    for (const LookCase& each : fixedLooks)
+    for (const LookCase& each : looks)
     {
         SCOPED_TRACE(each.name);
         Json expected = plain;
         expected.merge_patch(Json::parse(each.expected));
-        expectNear(materialOf(each.setUp), expected, "");
+        expectNear(materialOf(each.setUp), expected);
     }
 }
 
@@ -298,22 +288,46 @@ TEST(ExportedLooksTest, picturesAndSamplersAreWrittenOnce)
     EXPECT_EQ(json["materials"].size(), 4u);
 }
 
-TEST(ExportedLooksTest, picturesWithTheirFirstRowOnTopStayUpright)
+TEST(ExportedLooksTest, picturesOfAllFormatsArePng)
 {
-    const osg::ref_ptr<osg::Image> image = new osg::Image;
-    image->allocateImage(2, 3, 1, GL_RGB, GL_UNSIGNED_SHORT, 2);
-    image->setOrigin(osg::Image::TOP_LEFT);
-    for (unsigned int row = 0; row < 3; ++row)
-        for (unsigned int i = 0; i < 6; ++i)
-            reinterpret_cast<std::uint16_t*>(image->data(0, row))[i] =
-                static_cast<std::uint16_t>(1000 * row + 7 * i + 1);
-    const Result<std::string> png = encodePng(*image);
-    ASSERT_TRUE(png) << png.error().message;
-    const auto read = decodePicture({png.value().begin(), png.value().end()});
-    ASSERT_TRUE(read) << read.error().message;
-    ASSERT_EQ(read.value()->getDataType(), GLenum(GL_UNSIGNED_SHORT));
-    for (unsigned int row = 0; row < 3; ++row) // the decoded one begins at the bottom
-        EXPECT_EQ(std::memcmp(read.value()->data(0, 2 - row), image->data(0, row), 12), 0) << row;
+    constexpr auto bottom = osg::Image::BOTTOM_LEFT, top = osg::Image::TOP_LEFT;
+    const struct
+    {
+        GLenum format, type;
+        osg::Image::Origin origin; ///< of the first row
+        GLenum read;               ///< the format of the PNG
+    } cases[] = {{GL_LUMINANCE, GL_UNSIGNED_BYTE, bottom, GL_LUMINANCE},
+                 {GL_LUMINANCE_ALPHA, GL_UNSIGNED_SHORT, bottom, GL_LUMINANCE_ALPHA},
+                 {GL_RGB, GL_UNSIGNED_BYTE, bottom, GL_RGB},
+                 {GL_RGB, GL_UNSIGNED_SHORT, top, GL_RGB},
+                 {GL_RGBA, GL_UNSIGNED_SHORT, bottom, GL_RGBA},
+                 {GL_BGRA, GL_UNSIGNED_BYTE, bottom, GL_RGBA},
+                 {GL_RGB, GL_FLOAT, bottom, GL_RGBA}};
+    for (const auto& each : cases)
+    {
+        SCOPED_TRACE(testing::Message() << std::hex << each.format << ' ' << each.type);
+        const osg::ref_ptr<osg::Image> image = new osg::Image;
+        image->allocateImage(3, 2, 1, each.format, each.type, 4); // rows of nine bytes take twelve
+        EXPECT_TRUE(image->setOrigin(each.origin));
+        for (unsigned int y = 0; y < 2; ++y)
+            for (unsigned int x = 0; x < 3; ++x)
+                image->setColor(osg::Vec4(0.13f + 0.2f * float(x), 0.4f * float(y), 0.57f, 0.8f), x, y);
+        const Result<std::string> png = encodePng(*image);
+        ASSERT_TRUE(png) << png.error().message;
+        const auto read = decodePicture({png.value().begin(), png.value().end()});
+        ASSERT_TRUE(read) << read.error().message;
+        EXPECT_EQ(read.value()->getPixelFormat(), each.read);
+        EXPECT_EQ(read.value()->getDataType() == GL_UNSIGNED_SHORT, each.type == GL_UNSIGNED_SHORT);
+        for (unsigned int y = 0; y < 2; ++y) // the decoded one begins at the bottom
+            for (unsigned int x = 0; x < 3; ++x)
+                EXPECT_LT((read.value()->getColor(x, each.origin == top ? 1 - y : y) - image->getColor(x, y)).length(),
+                          0.01f)
+                    << x << ' ' << y;
+    }
+    const osg::ref_ptr<osg::Image> compressed = new osg::Image;
+    compressed->allocateImage(4, 4, 1, GL_COMPRESSED_RGBA_S3TC_DXT5_EXT, GL_UNSIGNED_BYTE);
+    EXPECT_FALSE(encodePng(*compressed));
+    EXPECT_FALSE(encodePng(*osg::ref_ptr<osg::Image>(new osg::Image)));
 }
 
 } // namespace

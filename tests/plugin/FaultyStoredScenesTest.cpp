@@ -1,14 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "plugin/ModelBuilder.h"
-#include "plugin/SharedAssets.h"
-#include "plugin/StoredScene.h"
-#include "support/NotifyLog.h"
+#include "plugin/StoredTest.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-
-#include <gtest/gtest.h>
-
-#include <regex>
 
 // Stored scenes are untrusted: every fault gives a message, and the rest of the scene can be updated.
 
@@ -101,40 +94,35 @@ const FaultCase faults[] = {
 
 // The track that slides: a constant rotation (place, three counts of bits, three ranges, the omitted component), then
 // place, bits, base and step of its translation and of its scale.
+const char noFit[] = "compact keyframes do not fit";
 const FaultCase compactFaults[] = {
-    {"a place beyond the record", "(Track -1 0 0 0 0 0 0 3) 0 ", "$1 128 ", Answer::Error,
-     "compact keyframes do not fit"},
-    {"a place below none", "(Track -1 0 0 0 0 0 0 3) 0 ", "$1 -7 ", Answer::Error, "compact keyframes do not fit"},
-    {"numbers across texels", "(Track -1 0 0 0 0 0 0 3) 0 ", "$1 127 ", Answer::Error, "compact keyframes do not fit"},
-    {"a number of too many bits", "(Track -1 0 0 0 0 0 0 3 0) [0-9]+", "$1 21", Answer::Error,
-     "compact keyframes do not fit"},
-    {"a negative count of bits", "(Track -1 0 0 0 0 0 0 3 0) [0-9]+", "$1 -1", Answer::Error,
-     "compact keyframes do not fit"},
-    {"a count of bits without an opposite", "Track -1 0 ", "Track -1 -2147483648 ", Answer::Error,
-     "compact keyframes do not fit"},
+    {"a place beyond the record", "(Track -1 0 0 0 0 0 0 3) 0 ", "$1 128 ", Answer::Error, noFit},
+    {"a place below none", "(Track -1 0 0 0 0 0 0 3) 0 ", "$1 -7 ", Answer::Error, noFit},
+    {"numbers across texels", "(Track -1 0 0 0 0 0 0 3) 0 ", "$1 127 ", Answer::Error, noFit},
+    {"a number of too many bits", "(Track -1 0 0 0 0 0 0 3 0) [0-9]+", "$1 21", Answer::Error, noFit},
+    {"a negative count of bits", "(Track -1 0 0 0 0 0 0 3 0) [0-9]+", "$1 -1", Answer::Error, noFit},
+    {"a count of bits without an opposite", "Track -1 0 ", "Track -1 -2147483648 ", Answer::Error, noFit},
     {"a range that is not finite", "(Track -1 0 0 0 0 0 0 3 0 [0-9]+ [0-9]+ [0-9]+) [^ ]+", "$1 inf", Answer::Error,
-     "compact keyframes do not fit"},
-    {"no component of a rotation", "Track -1 0 0 0 0 0 0 3", "Track -1 0 0 0 0 0 0 5", Answer::Error,
-     "compact keyframes do not fit"},
+     noFit},
+    {"no component of a rotation", "Track -1 0 0 0 0 0 0 3", "Track -1 0 0 0 0 0 0 5", Answer::Error, noFit},
     {"fewer joints", "Compact 3 ", "Compact 2 ", Answer::Error, ""},
     {"more joints", "Compact 3 ", "Compact 4000000000 ", Answer::Error, "Track"},
     {"less that is held", "Held 36 ", "Held 24 ", Answer::Error, ""},
-    {"a record of no texels", "RecordSize 1", "RecordSize 0", Answer::Error, "compact keyframes do not fit"},
-    {"a record that is too large", "RecordSize 1", "RecordSize 4000000000", Answer::Error,
-     "compact keyframes do not fit"},
-    {"fewer records", "Records 2 (.*)\n.*\n", "Records 1 $1\n", Answer::Error, "compact keyframes do not fit"},
+    {"a record of no texels", "RecordSize 1", "RecordSize 0", Answer::Error, noFit},
+    {"a record that is too large", "RecordSize 1", "RecordSize 4000000000", Answer::Error, noFit},
+    {"fewer records", "Records 2 (.*)\n.*\n", "Records 1 $1\n", Answer::Error, noFit},
     {"another number", "(Records 2 .*\n *)-?[0-9]+ ", "$1 77 ", Answer::NoFault, ""},
     {"weights of nobody", "Weights 0 \\{", "Weights 12 {\n0 0 0 0 0 0 0 0 0 0 0 0\n", Answer::Error, "the numbers"},
-    {"a Spline that is compact", "Clip Slide 0 1", "Clip Slide 1 1", Answer::Error, "compact keyframes do not fit"},
+    {"a Spline that is compact", "Clip Slide 0 1", "Clip Slide 1 1", Answer::Error, noFit},
     {"exact keyframes", "Clip Slide 0 1", "Clip Slide 0 0", Answer::Error, "Keyframes"},
 };
 
-class FaultyStoredScenesTest : public ::testing::Test
+class FaultyStoredScenesTest : public StoredSceneTest
 {
 protected:
     void SetUp() override
     {
-        osg::setNotifyHandler(log);
+        StoredSceneTest::SetUp();
         write("arm", nullptr);
         write("compact", new osgDB::Options("compact=0.001"));
     }
@@ -159,15 +147,12 @@ protected:
             ASSERT_TRUE(osgDB::writeNodeFile(*scene, files.folder.file(name + format)));
     }
 
-    void TearDown() override { osg::setNotifyHandler(new osg::StandardNotifyHandler); }
-
     std::string content(const std::string& name) { return readBytes(files.folder.file(name)); }
 
-    Read readContent(const std::string& name, const std::string& text)
+    /// What is read must be usable.
+    Read readAndUse(const std::string& name, const std::string& text)
     {
-        log->text.clear();
-        Read result = osgDB::Registry::instance()->readNode(files.folder.write(name, text), nullptr);
-        // The scene that was read must be usable.
+        Read result = readContent(name, text);
         if (result.validNode())
             if (AnimatedCharacter* character = findCharacter(*result.getNode()))
                 for (int frame = 0; frame < 3; ++frame)
@@ -181,11 +166,8 @@ protected:
     void expectAnswer(const std::string& sound, const FaultCase& fault)
     {
         SCOPED_TRACE(fault.name);
-        ASSERT_TRUE(readContent("sound.osgt", sound).validNode()) << log->text;
-        const std::string faulty = std::regex_replace(sound, std::regex(fault.pattern), fault.instead,
-                                                      std::regex_constants::format_first_only);
-        ASSERT_NE(faulty, sound) << "the pattern is not in the file";
-        Read result = readContent("faulty.osgt", faulty);
+        ASSERT_TRUE(readAndUse("sound.osgt", sound).validNode()) << log->text;
+        Read result = readAndUse("faulty.osgt", replaced(sound, fault.pattern, fault.instead));
         const std::string said = result.message() + log->text;
         EXPECT_NE(said.find(fault.message), std::string::npos) << said;
         EXPECT_EQ(result.validNode(), fault.answer != Answer::Error) << said;
@@ -195,9 +177,7 @@ protected:
         EXPECT_EQ(character->getController().clip(), fault.answer == Answer::NoPlaying ? -1 : 0) << said;
     }
 
-    StoredScene files;
     unsigned int meshes = 0;
-    osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::WARN);
 };
 
 } // namespace
@@ -206,41 +186,22 @@ TEST_F(FaultyStoredScenesTest, faultsHaveAMessage)
 {
     for (const FaultCase& fault : faults)
         expectAnswer(content("arm.osgt"), fault);
-}
-
-TEST_F(FaultyStoredScenesTest, faultsOfCompactClipsHaveAMessage)
-{
     for (const FaultCase& fault : compactFaults)
         expectAnswer(content("compact.osgt"), fault);
 }
 
-// Not inside one of OSG's quoted words: OSG would search for the closing quote forever.
-TEST_F(FaultyStoredScenesTest, textThatIsCutOffIsAnError)
+TEST_F(FaultyStoredScenesTest, whatIsCutOffIsAnError)
 {
-    // OSG's XML reader accepts a file without its end and keeps the complete elements.
-    for (const char* name : {"arm.osgt", "arm.osgx"})
+    // Not inside one of OSG's quoted words: OSG would search for the closing quote forever. OSG's XML reader accepts a
+    // file without its end and keeps the complete elements.
+    for (const std::string name : {"arm.osgt", "arm.osgx", "compact.osgb"})
     {
         const std::string sound = content(name);
-        const std::size_t first = sound.find("StoredAnimationSet"), last = sound.rfind("RootMotion");
+        const std::size_t first = sound.find("StoredAnimationSet");
+        const std::size_t last = name == "compact.osgb" ? sound.size() - 64 : sound.rfind("RootMotion");
         ASSERT_LT(first, last);
-        for (std::size_t length = first + 40; length < last; length += 41)
-        {
-            SCOPED_TRACE(length);
-            Read result = readContent(std::string("cut-") + name, sound.substr(0, length));
-            EXPECT_FALSE(result.validNode());
-        }
-    }
-}
-
-TEST_F(FaultyStoredScenesTest, bytesThatAreCutOffAreAnError)
-{
-    const std::string sound = content("compact.osgb");
-    const std::size_t first = sound.find("StoredAnimationSet");
-    ASSERT_NE(first, std::string::npos);
-    for (std::size_t length = first; length + 64 < sound.size(); length += 23)
-    {
-        SCOPED_TRACE(length);
-        EXPECT_FALSE(readContent("cut.osgb", sound.substr(0, length)).validNode());
+        for (std::size_t length = first + 40; length < last; length += 31)
+            EXPECT_FALSE(readAndUse("cut-" + name, sound.substr(0, length)).validNode()) << length;
     }
 }
 
@@ -255,7 +216,7 @@ TEST_F(FaultyStoredScenesTest, changedBytesDoNoHarm)
         {
             std::string changed = sound;
             changed[at] = static_cast<char>(changed[at] ^ (at % 2 ? 0xFF : 0x7F));
-            errors += !readContent("changed.osgb", changed).validNode();
+            errors += !readAndUse("changed.osgb", changed).validNode();
         }
         EXPECT_GT(errors, 50u) << name;
     }

@@ -138,7 +138,7 @@ TEST(FileLodsTest, crowdsShowTheMostDetailedAndCopiesAndScenesKeepAll)
     EXPECT_TRUE(dynamic_cast<SkinnedGeometry*>(lods[0]->getChild(2)));
 }
 
-TEST(FileLodsTest, variantsChangeEveryLevel)
+TEST(FileLodsTest, variantsAndVisibilityReachEveryLevel)
 {
     Json document = levelsDocument();
     document["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "red"}}};
@@ -150,6 +150,11 @@ TEST(FileLodsTest, variantsChangeEveryLevel)
     const osg::LOD& lod = *lodsOf(*model.character)[0];
     for (unsigned int level = 0; level < lod.getNumChildren(); ++level)
         EXPECT_EQ(lod.getChild(level)->getStateSet()->getName(), "red") << level;
+    document["nodes"][body]["extensions"]["KHR_node_visibility"]["visible"] = false;
+    const ImportedModel hidden = importedDocument(document);
+    for (const osg::LOD* each : lodsOf(*hidden.root))
+        for (unsigned int level = 0; level < each->getNumChildren(); ++level)
+            EXPECT_EQ(each->getChild(level)->getNodeMask() == 0, each == lodsOf(*hidden.root)[0]) << level;
 }
 
 TEST(FileLodsTest, aFaultLeavesTheNodeItself)
@@ -256,16 +261,6 @@ TEST(FileLodsTest, levelsCountAsTheDepthOfTheirNode)
                   std::string::npos)
             << warnings[0];
     }
-}
-
-TEST(FileLodsTest, levelsAreHiddenWithTheirNode)
-{
-    Json document = levelsDocument();
-    document["nodes"][body]["extensions"]["KHR_node_visibility"]["visible"] = false;
-    const ImportedModel model = importedDocument(document);
-    for (const osg::LOD* lod : lodsOf(*model.root))
-        for (unsigned int level = 0; level < lod->getNumChildren(); ++level)
-            EXPECT_EQ(lod->getChild(level)->getNodeMask() == 0, lod == lodsOf(*model.root)[0]) << level;
 }
 
 TEST(FileLodsTest, levelsOfMaterialsAreOneNote)

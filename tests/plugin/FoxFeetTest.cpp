@@ -87,7 +87,7 @@ std::vector<double> leastHeights(double slope)
 } // namespace
 
 // The front paws are half a metre before the hind paws, whose ground decides the height of the fox.
-TEST(FoxFeetTest, AQuadrupedReachesTheGroundOfASlope)
+TEST(FoxFeetTest, aQuadrupedReachesTheGroundOfASlope)
 {
     if (!std::filesystem::exists(foxFile)) GTEST_SKIP() << "there is no " << foxFile;
     usePluginsOfTheBuild();

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include "plugin/BumpyTubes.h"
+#include "plugin/ModelImport.h"
 #include "plugin/PluginFolder.h"
-#include "plugin/SharedAssets.h"
 #include "support/PrimitiveCount.h"
+#include "support/ScratchFolder.h"
 #include "support/ThreadingModels.h"
 #include "support/ViewerGLTest.h"
 
@@ -11,9 +13,6 @@
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
 #include <osgDB/ReadFile>
-#include <osgUtil/Optimizer>
-
-#include <array>
 
 // Characters drawn at levels of detail look like those with all triangles: their pictures differ by less than two
 // pictures of all triangles when the camera turns by half a pixel.
@@ -100,27 +99,6 @@ protected:
                                    osg::Matrix::translate(2.0 * right / side, 2.0 * up / side, 0.0));
     }
 
-    /// What a scene shows: the mean of pictures that are moved by fractions of a pixel, for small characters cover few
-    /// of their pixels.
-    struct Shown
-    {
-        double pixels = 0.0; ///< that are drawn
-        osg::Vec4 color;     ///< of these
-    };
-    Shown shownOf(osg::Node& scene, double pixels)
-    {
-        constexpr int steps = 4; // in a pixel
-        Shown shown;
-        for (int step = 0; step < steps * steps; ++step)
-        {
-            lookAside(scene, pixels, 1.0 * (step % steps) / steps, 1.0 * (step / steps) / steps);
-            const osg::ref_ptr<osg::Image> image = ViewerGLTest::pictureOf(&scene, {0.2});
-            shown.pixels += static_cast<double>(Picture::pixelsDrawn(*image)) / (steps * steps);
-            shown.color += Picture::meanColor(*image) / static_cast<float>(steps * steps);
-        }
-        return shown;
-    }
-
     GLuint primitives() const { return _count->primitives(); } ///< of the last frame
 
 private:
@@ -132,11 +110,6 @@ struct ModelCase
     const char* file;
     bool isCrowd;
 };
-
-void PrintTo(const ModelCase& model, std::ostream* out)
-{
-    *out << model.file << (model.isCrowd ? ", a crowd" : ", nodes");
-}
 
 class LodModelsGLTest : public LodGLTest, public ::testing::WithParamInterface<ModelCase>
 {
@@ -159,73 +132,23 @@ TEST_P(LodModelsGLTest, lookAsWithAllTriangles)
         lookAside(*all, pixels, 0.5, 0.0);
         const double moved = Picture::meanDifference(*expected, *drawn(*all));
         const double difference = Picture::meanDifference(*expected, *found);
-        const Shown shown = shownOf(*fewer, pixels), shownByAll = shownOf(*all, pixels);
         EXPECT_LT(difference, moved) << "at " << pixels << " pixels";
-        EXPECT_LT((shown.color - shownByAll.color).length(), 0.12f) << "at " << pixels << " pixels";
-        const double share = pixels > 40.0 ? 0.04 : 0.12; // a character covers one to five pixels
-        EXPECT_NEAR(shown.pixels, shownByAll.pixels, share * shownByAll.pixels) << "at " << pixels << " pixels";
+        const int shown = Picture::pixelsDrawn(*expected);
+        if (pixels > 40.0) // below, a character covers one to five pixels
+        {
+            EXPECT_NEAR(Picture::pixelsDrawn(*found), shown, 0.1 * shown) << "thin at " << pixels << " pixels";
+        }
         const GLuint least = pixels > 200.0 ? 1 : pixels > 40.0 ? 2 : 4; // the least reduction factor
         EXPECT_LE(least * ofFewer, ofAll) << "at " << pixels << " pixels";
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, LodModelsGLTest,
-                         ::testing::Values(ModelCase{"Wanderer.glb", true}, ModelCase{"Wanderer.glb", false},
-                                           ModelCase{"Serpent.glb", true}, ModelCase{"assets/Fox/Fox.glb", false},
-                                           ModelCase{"assets/CesiumMan/CesiumMan.glb", true},
-                                           ModelCase{"assets/Knight/Knight.glb", true},
-                                           ModelCase{"assets/Knight/Knight.glb", false}));
-
-TEST_F(LodGLTest, whatIsNearHasAllTrianglesWhateverAnotherCameraSees)
-{
-    for (const bool isCrowd : {true, false})
-    {
-        osg::ref_ptr<osg::Image> pictures[2];
-        GLuint counts[2];
-        for (const bool isFewer : {false, true})
-        {
-            const osg::ref_ptr<osg::Group> scene = makeScene(ownScene("Wanderer.glb"), isCrowd, isFewer ? 0.01f : 0.0f);
-            const osg::ref_ptr<osg::Group> views = new osg::Group;
-            for (const bool isFar : {false, true})
-            {
-                const osg::ref_ptr<osg::Camera> camera = new osg::Camera;
-                camera->setReferenceFrame(osg::Transform::ABSOLUTE_RF);
-                camera->setRenderOrder(osg::Camera::POST_RENDER);
-                camera->setClearMask(0);
-                camera->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
-                camera->setViewport(isFar ? side / 2 : 0, 0, side / 2, side / 2);
-                look(*camera, *scene, isFar ? 20.0 : 4000.0);
-                camera->setCullingMode(camera->getCullingMode() & ~osg::CullSettings::SMALL_FEATURE_CULLING);
-                camera->addChild(scene);
-                views->addChild(camera);
-            }
-            pictures[isFewer] = drawn(*views);
-            counts[isFewer] = primitives();
-        }
-        EXPECT_LT(counts[1], 0.9 * counts[0]);
-        int different = 0, shown = 0;
-        for (int y = 0; y < side; ++y)
-            for (int x = 0; x < side / 2; ++x)
-            {
-                different += pictures[0]->getColor(x, y) != pictures[1]->getColor(x, y);
-                shown += pictures[0]->getColor(x, y) != pictures[0]->getColor(0, side - 1);
-            }
-        EXPECT_EQ(different, 0);
-        EXPECT_GT(shown, 1000);
-    }
-}
-
-TEST_F(LodGLTest, surviveTheOptimizer)
-{
-    const osg::ref_ptr<osg::Group> scene = makeScene(ownScene("Wanderer.glb"), false, 0.5f);
-    const osg::ref_ptr<osg::Image> expected = pictureOf(*scene, 200.0);
-    const GLuint ofFirst = primitives();
-    osgUtil::Optimizer optimizer;
-    optimizer.optimize(scene, osgUtil::Optimizer::ALL_OPTIMIZATIONS);
-    // Flattened matrices round differently.
-    EXPECT_LT(Picture::pixelsDifferent(*expected, *drawn(*scene)), 5);
-    EXPECT_LE(primitives(), ofFirst);
-}
+INSTANTIATE_TEST_SUITE_P(
+    Models, LodModelsGLTest,
+    ::testing::Values(ModelCase{"Wanderer.glb", true}, ModelCase{"Wanderer.glb", false}, ModelCase{"Serpent.glb", true},
+                      ModelCase{"assets/Fox/Fox.glb", false}, ModelCase{"assets/CesiumMan/CesiumMan.glb", true},
+                      ModelCase{"assets/Knight/Knight.glb", true}, ModelCase{"assets/Knight/Knight.glb", false}),
+    [](const auto& info) { return gltf::nameOfFile(info.param.file) + (info.param.isCrowd ? "Crowd" : "Nodes"); });
 
 TEST_F(LodGLTest, comeBackWhenGLObjectsWereReleased)
 {
@@ -238,10 +161,12 @@ TEST_F(LodGLTest, comeBackWhenGLObjectsWereReleased)
 
 TEST_F(LodGLTest, everyThreadingModelDrawsTheSame)
 {
+    const ScratchFolder folder;
+    const std::string tubes = folder.write("tubes.gltf", gltf::bumpyTubes().text());
     const auto drawnBy = [&](osgViewer::ViewerBase::ThreadingModel model)
     {
-        const osg::ref_ptr<osg::Group> scene = makeScene(ownScene("Serpent.glb"), true, 0.5f);
-        scene->addChild(makeScene(ownScene("Serpent.glb"), false, 0.5f));
+        const osg::ref_ptr<osg::Group> scene = makeScene(tubes, true, 0.5f);
+        scene->addChild(makeScene(tubes, false, 0.5f));
         // The cull traversal has to build the levels.
         forEachMeshBelow(*scene, [](SkinnedGeometry& mesh) { MeshDetail::forgetLevels(mesh); });
         context().releaseContext();

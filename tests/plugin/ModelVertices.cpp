@@ -7,21 +7,11 @@
 namespace osgGpuAnimation::gltf
 {
 
-namespace
-{
-
-glm::dvec3 toGlm(const osg::Vec3& v)
-{
-    return glm::dvec3(v.x(), v.y(), v.z());
-}
-
-} // namespace
-
 ModelVertices::ModelVertices(const ImportedModel& model, int clip, double time,
                              const std::map<int, std::vector<double>>& fixedWeights)
-    : _model(model), _fixedWeights(fixedWeights)
 {
     if (!model.set) return;
+    const AnimationSet& set = *model.set;
     AnimationController controller(model.set);
     if (clip >= 0)
     {
@@ -31,72 +21,37 @@ ModelVertices::ModelVertices(const ImportedModel& model, int clip, double time,
         controller.seek(time);
     }
     std::vector<JointTransform> tracks;
-    Pose::mix(*model.set, controller.instruction(), tracks);
-    Pose::jointToModel(*model.set, tracks, AffineMatrix(), _jointToModel);
-    Pose::palette(*model.set, tracks, _jointToModel, _palette);
-}
-
-std::vector<double> ModelVertices::weights(int morph) const
-{
-    const MorphWeights& source = _model.set->morphs()[static_cast<std::size_t>(morph)];
-    const auto fixed = _fixedWeights.find(source.sourceNode);
-    if (fixed != _fixedWeights.end()) return fixed->second;
-    std::vector<double> result;
-    for (std::size_t i = 0; i < source.defaults.size(); ++i)
+    Pose::mix(set, controller.instruction(), tracks);
+    Pose::jointToModel(set, tracks, AffineMatrix(), _jointToModel);
+    Pose::palette(set, tracks, _jointToModel, _palette);
+    for (std::size_t morph = 0; morph < set.morphs().size(); ++morph)
     {
-        const std::size_t block = i / MorphWeights::weightsPerBlock;
-        const int place = static_cast<int>(i % MorphWeights::weightsPerBlock);
-        const int entry = _model.set->entryOfMorph(static_cast<std::size_t>(morph));
-        result.push_back(_palette[static_cast<std::size_t>(entry) + block].rows[place / 4][place % 4]);
-    }
-    return result;
-}
-
-glm::dvec3 ModelVertices::morphed(const ImportedPrimitive& primitive, std::size_t vertex) const
-{
-    const auto& base = dynamic_cast<const osg::Vec3Array&>(*primitive.geometry->getVertexArray());
-    glm::dvec3 position = toGlm(base[vertex]);
-    if (primitive.morph < 0) return position;
-    const std::vector<double> amounts = weights(primitive.morph);
-    const auto& targets = dynamic_cast<const SkinnedGeometry&>(*primitive.geometry).getMorphTargets();
-    for (std::size_t target = 0; target < targets.size(); ++target)
-    {
-        if (targets[target].positions) position += amounts[target] * toGlm((*targets[target].positions)[vertex]);
-    }
-    return position;
-}
-
-glm::dvec3 ModelVertices::placed(const ImportedPrimitive& primitive, std::size_t vertex) const
-{
-    const glm::dvec3 position = morphed(primitive, vertex);
-    const auto* skinned = dynamic_cast<const SkinnedGeometry*>(primitive.geometry.get());
-    if (!skinned)
-    {
-        const osg::Vec3d result = osg::Vec3d(position.x, position.y, position.z) * primitive.toModel;
-        return glm::dvec3(result.x(), result.y(), result.z());
-    }
-    if (skinned->getRigidEntry() >= 0)
-        return glm::dvec3(_palette[static_cast<std::size_t>(skinned->getRigidEntry())].toColumns() *
-                          glm::dvec4(position, 1.0));
-    glm::dvec3 sum(0.0);
-    for (unsigned int set = 0; set < SkinnedGeometry::maxInfluenceSets && skinned->getEntries(set); ++set)
-    {
-        for (unsigned int i = 0; i < 4; ++i)
+        const auto fixed = fixedWeights.find(set.morphs()[morph].sourceNode);
+        if (fixed == fixedWeights.end()) continue;
+        for (std::size_t i = 0; i < fixed->second.size(); ++i)
         {
-            const double weight = (*skinned->getWeights(set))[vertex][i];
-            if (weight == 0.0) continue;
-            const glm::dmat4 entry = _palette[(*skinned->getEntries(set))[vertex][i]].toColumns();
-            sum += weight * glm::dvec3(entry * glm::dvec4(position, 1.0));
+            const std::size_t block = i / MorphWeights::weightsPerBlock;
+            const int place = static_cast<int>(i % MorphWeights::weightsPerBlock);
+            _palette[static_cast<std::size_t>(set.entryOfMorph(morph)) + block].rows[place / 4][place % 4] =
+                static_cast<float>(fixed->second[i]);
         }
     }
-    return sum;
 }
 
 std::vector<glm::dvec3> ModelVertices::positions(const ImportedPrimitive& primitive) const
 {
+    std::vector<glm::dvec3> all;
+    if (const auto* skinned = dynamic_cast<const SkinnedGeometry*>(primitive.geometry.get()))
+        skinned->computePositions(_palette, all);
+    else
+        for (const osg::Vec3& vertex : dynamic_cast<const osg::Vec3Array&>(*primitive.geometry->getVertexArray()))
+        {
+            const osg::Vec3d place = osg::Vec3d(vertex) * primitive.toModel;
+            all.emplace_back(place.x(), place.y(), place.z());
+        }
     std::vector<glm::dvec3> result;
     for (std::size_t vertex = 0; vertex < primitive.vertexCount; ++vertex)
-        result.push_back(placed(primitive, primitive.geometryVertex ? (*primitive.geometryVertex)[vertex] : vertex));
+        result.push_back(all[primitive.geometryVertex ? (*primitive.geometryVertex)[vertex] : vertex]);
     return result;
 }
 

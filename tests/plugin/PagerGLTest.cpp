@@ -62,7 +62,7 @@ protected:
     {
         for (int tries = 0; tries < 6000 && loaded(scene) != wanted; ++tries)
         {
-            drawAt(_time += 0.02);
+            drawAt(time += 0.02);
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
         }
         return loaded(scene) == wanted;
@@ -74,14 +74,7 @@ protected:
         viewer().getCamera()->setProjectionMatrixAsOrtho(-4, 4, -4, 4, 1, 2 * distance);
     }
 
-    void drawSome(int frames)
-    {
-        for (int frame = 0; frame < frames; ++frame)
-            drawAt(_time += 0.1);
-    }
-
-private:
-    double _time = 0.0; ///< seconds
+    double time = 0.0; ///< seconds
 };
 
 TEST_F(PagerGLTest, charactersComeAndGoWhileFramesAreDrawn)
@@ -93,10 +86,10 @@ TEST_F(PagerGLTest, charactersComeAndGoWhileFramesAreDrawn)
     {
         lookFrom(10);
         ASSERT_TRUE(drawUntilLoaded(*scene, places)) << round;
-        drawSome(2);
+        drawAt(time += 0.2);
         const osg::ref_ptr<osg::Image> once = picture().copy();
         EXPECT_GT(picture().pixelsDrawn(), 100) << round;
-        drawSome(3);
+        drawAt(time += 0.3);
         EXPECT_GT(Picture::pixelsDifferent(*once, picture().image()), 0) << "they move, round " << round;
         lookFrom(1000);
         ASSERT_TRUE(drawUntilLoaded(*scene, 0)) << round;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
+#include "plugin/ModelImport.h"
 #include "plugin/PluginFolder.h"
-#include "plugin/PosedTriangles.h"
-#include "plugin/SharedAssets.h"
 
+#include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 #include <osgGpuAnimation/nodes/PickedJoint.h>
 
@@ -12,8 +13,13 @@
 #include <osgDB/ReadFile>
 #include <osgUtil/IntersectionVisitor>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <random>
+#include <set>
+#include <vector>
 
 // Compares 300 random rays per model with the triangles in the CPU twin's pose, at random times, in crossfades and with
 // layers, below transforms that rotate and scale, for a single character and for a crowd.
@@ -24,36 +30,84 @@ namespace osgGpuAnimation
 namespace
 {
 
-struct PickedModel
+/// Meshes as plain geometry, posed by the CPU twin: OSG's own intersection is the reference.
+class PlainScene
 {
-    const char* name;
-    const char* shared; ///< in the shared folder; null: our own scene
-    const char* scene;
+public:
+    /// mesh: as the controller poses it. toWorld: from the file's axes. owner: of the mesh in a crowd.
+    void add(const SkinnedGeometry& mesh, const AnimationController& controller, const osg::Matrixd& toWorld,
+             AnimatedCrowd::Instance owner = 0)
+    {
+        std::vector<AffineMatrix> palette;
+        Pose::evaluate(controller.set(), controller.instruction(), AffineMatrix(), palette);
+        std::vector<glm::dvec3> positions;
+        mesh.computePositions(palette, positions);
+        const osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array;
+        for (const glm::dvec3& p : positions)
+        {
+            vertices->push_back(osg::Vec3d(p.x, p.y, p.z));
+            points.push_back(osg::Vec3d(p.x, p.y, p.z) * toWorld);
+            box.expandBy(points.back());
+        }
+        const osg::ref_ptr<osg::Geometry> plain = new osg::Geometry;
+        plain->setVertexArray(vertices);
+        plain->setPrimitiveSetList(mesh.getPrimitiveSetList());
+        const osg::ref_ptr<osg::MatrixTransform> place = new osg::MatrixTransform(toWorld);
+        place->addChild(plain);
+        root->addChild(place);
+        _sources[plain] = {&mesh, &controller.set(), owner};
+    }
+
+    double size() const { return (box._max - box._min).length(); }
+    AnimatedCrowd::Instance ownerOf(const osg::Drawable* plain) const { return _sources.at(plain).owner; }
+
+    /// The heaviest joint at a hit, and any that weighs nearly as much.
+    std::set<int> jointsAt(const osgUtil::LineSegmentIntersector::Intersection& hit) const
+    {
+        const Source& source = _sources.at(hit.drawable);
+        std::map<int, double> weights;
+        double most = 0.0;
+        for (std::size_t corner = 0; corner < hit.indexList.size(); ++corner)
+            source.mesh->forEachInfluence(hit.indexList[corner],
+                                          [&](std::size_t entry, float weight)
+                                          {
+                                              double& sum = weights[source.set->palette()[entry].joint];
+                                              sum += hit.ratioList[corner] * static_cast<double>(weight);
+                                              most = std::max(most, sum);
+                                          });
+        std::set<int> joints;
+        for (const auto& [joint, weight] : weights)
+            if (weight >= most - 1e-2) joints.insert(joint);
+        return joints;
+    }
+
+    osg::ref_ptr<osg::Group> root = new osg::Group;
+    std::vector<osg::Vec3d> points; ///< all vertices, in the world
+    osg::BoundingBoxd box;
+
+private:
+    struct Source
+    {
+        const SkinnedGeometry* mesh;
+        const AnimationSet* set;
+        AnimatedCrowd::Instance owner;
+    };
+    std::map<const osg::Drawable*, Source> _sources;
 };
 
-void PrintTo(const PickedModel& model, std::ostream* out)
-{
-    *out << model.name;
-}
-
-class PickingTest : public ::testing::TestWithParam<PickedModel>
+class PickingTest : public ::testing::TestWithParam<const char*>
 {
 protected:
     static constexpr unsigned int seed = 20261121;
     static constexpr int poses = 30, raysAPose = 10;
 
-    std::string file() const
+    void SetUp() override
     {
-        if (GetParam().shared) return sharedFile(GetParam().shared);
-        return ownScene(GetParam().scene);
-    }
-
-    void load()
-    {
+        if (modelFile(GetParam()).empty()) GTEST_SKIP() << "there is no " << GetParam();
         usePluginsOfTheBuild();
         const osg::ref_ptr<osgDB::Options> options = new osgDB::Options("noKeys");
         options->setBuildKdTreesHint(osgDB::Options::BUILD_KDTREES);
-        node = osgDB::readRefNodeFile(file(), options);
+        node = osgDB::readRefNodeFile(modelFile(GetParam()), options);
         ASSERT_TRUE(node.valid());
         character = findCharacter(*node);
         ASSERT_NE(character, nullptr);
@@ -97,87 +151,88 @@ protected:
             if (auto* mesh = dynamic_cast<SkinnedGeometry*>(character->getChild(i))) function(*mesh);
     }
 
-    PosedTriangles trianglesOfCharacter() const
+    PlainScene plainCharacter() const
     {
-        PosedTriangles triangles;
+        PlainScene plain;
         const osg::Matrixd toWorld =
             character->getFileToNode() * osg::computeLocalToWorld(character->getParentalNodePaths().front());
-        forEachMesh([&](const SkinnedGeometry& mesh) { triangles.add(mesh, character->getController(), toWorld); });
-        return triangles;
+        forEachMesh([&](const SkinnedGeometry& mesh) { plain.add(mesh, character->getController(), toWorld); });
+        return plain;
     }
 
     /// A ray that starts outside the model and passes near a random point of the mesh.
-    osg::ref_ptr<osgUtil::LineSegmentIntersector> ray(const PosedTriangles& triangles)
+    osg::ref_ptr<osgUtil::LineSegmentIntersector> ray(const PlainScene& plain)
     {
-        const osg::Vec3d target = triangles.points()[random() % triangles.points().size()] +
-                                  direction() * number(0.0, 0.05) * triangles.size();
-        const osg::Vec3d way = direction() * 2.0 * triangles.size();
+        const osg::Vec3d target =
+            plain.points[random() % plain.points.size()] + direction() * number(0.0, 0.05) * plain.size();
+        const osg::Vec3d way = direction() * 2.0 * plain.size();
         return new osgUtil::LineSegmentIntersector(target - way, target + way);
     }
 
-    /// Compares the ray's first hit with the triangles. crowd: null if the character is picked.
-    void check(osgUtil::LineSegmentIntersector& ray, const PosedTriangles& triangles, const AnimatedCrowd* crowd)
+    /// Compares the first hits of a ray. crowd: null if the character is picked.
+    void check(const PlainScene& plain, const AnimatedCrowd* crowd)
     {
-        osgUtil::IntersectionVisitor visitor(&ray);
+        const osg::ref_ptr<osgUtil::LineSegmentIntersector> found = ray(plain);
+        const osg::ref_ptr<osgUtil::LineSegmentIntersector> expected =
+            new osgUtil::LineSegmentIntersector(found->getStart(), found->getEnd());
+        osgUtil::IntersectionVisitor visitor(found), plainVisitor(expected);
         scene->accept(visitor);
-        const std::vector<PosedTriangles::Hit> expected = triangles.hits(ray.getStart(), ray.getEnd());
-        const double tolerance = 1e-4 * triangles.size();
-        double sure = INFINITY;
-        for (const PosedTriangles::Hit& hit : expected)
-            if (hit.isSure) sure = std::min(sure, hit.distance);
-        if (!ray.containsIntersections())
+        plain.root->accept(plainVisitor);
+        if (!found->containsIntersections() || !expected->containsIntersections())
         {
-            EXPECT_EQ(sure, INFINITY) << "nothing is hit";
+            atEdges += found->containsIntersections() != expected->containsIntersections();
             return;
         }
-        const osgUtil::LineSegmentIntersector::Intersection hit = ray.getFirstIntersection();
-        const double distance = (hit.getWorldIntersectPoint() - ray.getStart()).length();
-        EXPECT_LE(distance, sure + tolerance);
+        const auto hit = found->getFirstIntersection(), wanted = expected->getFirstIntersection();
         const std::optional<PickedJoint> picked = jointOf(hit);
         ASSERT_TRUE(picked);
         EXPECT_EQ(picked->crowd, crowd);
         EXPECT_EQ(picked->character, crowd ? nullptr : character);
-        bool isThere = false;
-        for (const PosedTriangles::Hit& candidate : expected)
-            isThere = isThere ||
-                      (std::abs(candidate.distance - distance) <= tolerance && candidate.owner == picked->instance &&
-                       candidate.joints.count(static_cast<int>(picked->joint)) > 0);
-        EXPECT_TRUE(isThere) << "hit at " << distance << ", joint " << picked->joint << ", nearest sure " << sure;
         ++hits;
+        const auto isFar = [&](const auto& other)
+        { return (hit.getWorldIntersectPoint() - other.getWorldIntersectPoint()).length() > 1e-4 * plain.size(); };
+        atEdges += isFar(wanted);
+        bool isThere = isFar(wanted);
+        for (const auto& candidate : expected->getIntersections()) // surfaces may coincide
+            isThere = isThere || (!isFar(candidate) && picked->instance == plain.ownerOf(candidate.drawable) &&
+                                  plain.jointsAt(candidate).count(static_cast<int>(picked->joint)) > 0);
+        EXPECT_TRUE(isThere) << "joint " << picked->joint;
+    }
+
+    void expectFewAtEdges() const
+    {
+        EXPECT_GE(hits, poses * raysAPose / 4) << "rays that hit nothing say little";
+        EXPECT_LE(atEdges, poses * raysAPose / 100) << "rounding decides what these meet";
     }
 
     std::mt19937 random{seed};
     osg::ref_ptr<osg::Node> node;
     AnimatedCharacter* character = nullptr;
     osg::ref_ptr<osg::MatrixTransform> scene;
-    int hits = 0;
+    int hits = 0, atEdges = 0;
 };
 
 TEST_P(PickingTest, raysMeetACharacterAsItIsPosed)
 {
-    if (file().empty()) GTEST_SKIP() << "there is no " << GetParam().shared;
-    ASSERT_NO_FATAL_FAILURE(load());
     for (int pose = 0; pose < poses; ++pose)
     {
         playAnything(character->getController());
         character->update(0.0);
-        const PosedTriangles triangles = trianglesOfCharacter();
+        const PlainScene plain = plainCharacter();
         for (int i = 0; i < raysAPose; ++i)
         {
             SCOPED_TRACE(testing::Message() << "pose " << pose << ", ray " << i << ", seed " << seed);
-            check(*ray(triangles), triangles, nullptr);
+            check(plain, nullptr);
         }
     }
-    EXPECT_GE(hits, poses * raysAPose / 4) << "rays that hit nothing say little";
+    expectFewAtEdges();
 }
 
 TEST_P(PickingTest, raysMeetACrowdsInstancesAsTheyArePosed)
 {
-    if (file().empty()) GTEST_SKIP() << "there is no " << GetParam().shared;
-    ASSERT_NO_FATAL_FAILURE(load());
     const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*character);
     scene->replaceChild(node, crowd);
-    PosedTriangles triangles;
+    PlainScene plain;
     const double apart = 1.2 * static_cast<double>(character->getBound().radius());
     for (int i = 0; i < 12; ++i)
     {
@@ -188,33 +243,31 @@ TEST_P(PickingTest, raysMeetACrowdsInstancesAsTheyArePosed)
                                        osg::Matrixd::translate(apart * (i % 4), apart * (i / 4), number(-1, 1));
         const AnimatedCrowd::Instance instance = crowd->add(placement, controller).value();
         const osg::Matrixd toWorld = crowd->getFileToNode() * placement * scene->getMatrix();
-        forEachMesh([&](const SkinnedGeometry& mesh) { triangles.add(mesh, controller, toWorld, instance); });
+        forEachMesh([&](const SkinnedGeometry& mesh) { plain.add(mesh, controller, toWorld, instance); });
     }
     crowd->update(0.0);
     for (int i = 0; i < poses * raysAPose; ++i)
     {
         SCOPED_TRACE(testing::Message() << "ray " << i << ", seed " << seed);
-        check(*ray(triangles), triangles, crowd);
+        check(plain, crowd);
     }
-    EXPECT_GE(hits, poses * raysAPose / 4) << "rays that hit nothing say little";
+    expectFewAtEdges();
 }
 
 /// A box around a point of the mesh contains it, so it hits the character; the joint is that of the nearest vertex.
 TEST_P(PickingTest, polytopesMeetACharacterAsItIsPosed)
 {
-    if (file().empty()) GTEST_SKIP() << "there is no " << GetParam().shared;
-    ASSERT_NO_FATAL_FAILURE(load());
     for (int pose = 0; pose < poses; ++pose)
     {
         playAnything(character->getController());
         character->update(0.0);
-        const PosedTriangles triangles = trianglesOfCharacter();
-        const double half = 1e-3 * triangles.size();
-        const osg::Vec3d point = triangles.points()[random() % triangles.points().size()];
+        const PlainScene plain = plainCharacter();
+        const double half = 1e-3 * plain.size();
+        const osg::Vec3d point = plain.points[random() % plain.points.size()];
         for (const bool isThere : {true, false})
         {
             SCOPED_TRACE(testing::Message() << "pose " << pose << (isThere ? "" : ", far off") << ", seed " << seed);
-            const osg::Vec3d centre = isThere ? point : point + direction() * 2.0 * triangles.size();
+            const osg::Vec3d centre = isThere ? point : point + direction() * 2.0 * plain.size();
             osg::Polytope box;
             for (const osg::Vec3d axis : {osg::X_AXIS, osg::Y_AXIS, osg::Z_AXIS})
                 for (const double side : {-1.0, 1.0})
@@ -232,17 +285,12 @@ TEST_P(PickingTest, polytopesMeetACharacterAsItIsPosed)
     }
 }
 
-const PickedModel pickedModels[] = {
-    {"Fox", "assets/Fox/Fox.glb", nullptr},
-    {"CesiumMan", "assets/CesiumMan/CesiumMan.glb", nullptr},
-    {"Knight", "assets/Knight/Knight.glb", nullptr},
-    {"MorphCube", "assets/AnimatedMorphCube/AnimatedMorphCube.gltf", nullptr},
-    {"Wanderer", nullptr, "Wanderer.glb"},
-    {"Serpent", nullptr, "Serpent.glb"},
-};
-
-INSTANTIATE_TEST_SUITE_P(Models, PickingTest, ::testing::ValuesIn(pickedModels),
-                         [](const auto& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(Models, PickingTest,
+                         ::testing::Values("assets/Fox/Fox.glb", "assets/CesiumMan/CesiumMan.glb",
+                                           "assets/Knight/Knight.glb",
+                                           "assets/AnimatedMorphCube/AnimatedMorphCube.gltf", "Wanderer.glb",
+                                           "Serpent.glb"),
+                         [](const auto& info) { return gltf::nameOfFile(info.param); });
 
 } // namespace
 

@@ -15,8 +15,6 @@
 #include <cmath>
 #include <map>
 #include <string>
-#include <type_traits>
-#include <utility>
 #include <vector>
 
 namespace osgGpuAnimation
@@ -33,22 +31,16 @@ public:
         scene.accept(*this);
     }
 
-    /// Both in the order of the traversal. Meshes by name and number of vertices, joints by name.
-    std::map<std::pair<std::string, std::size_t>, std::vector<std::vector<osg::Vec3d>>> meshes;
-    std::map<std::string, std::vector<osg::Vec3d>> joints;
+    /// In the order of the traversal; by "mesh NAME, VERTICES" and "joint NAME".
+    std::map<std::string, std::vector<osg::Vec3d>> points;
 
     double size() const ///< the largest coordinate
     {
-        double most = 0.0;
-        const auto add = [&](const osg::Vec3d& at) {
-            most = std::max({most, std::abs(at.x()), std::abs(at.y()), std::abs(at.z())});
-        };
-        for (const auto& [name, places] : joints)
-            std::for_each(places.begin(), places.end(), add);
-        for (const auto& [key, all] : meshes)
-            for (const std::vector<osg::Vec3d>& vertices : all)
-                std::for_each(vertices.begin(), vertices.end(), add);
-        return most;
+        double largest = 0.0;
+        for (const auto& [name, places] : points)
+            for (const osg::Vec3d& at : places)
+                largest = std::max({largest, std::abs(at.x()), std::abs(at.y()), std::abs(at.z())});
+        return largest;
     }
 
     void apply(osg::Transform& node) override
@@ -69,10 +61,9 @@ public:
             geometry ? dynamic_cast<const osg::Vec3Array*>(geometry->getVertexArray()) : nullptr;
         if (!vertices) return;
         const osg::Matrixd toScene = osg::computeLocalToWorld(getNodePath());
-        std::vector<osg::Vec3d> posed;
         for (const osg::Vec3& vertex : *vertices)
-            posed.push_back(osg::Vec3d(vertex) * toScene);
-        meshes[{drawable.getName(), vertices->size()}].push_back(std::move(posed));
+            points["mesh " + drawable.getName() + ", " + std::to_string(vertices->size())].push_back(
+                osg::Vec3d(vertex) * toScene);
     }
 
 private:
@@ -91,12 +82,9 @@ private:
         const osg::Matrixd toScene = osg::computeLocalToWorld(getNodePath());
         const Skeleton& skeleton = character.getAnimationSet().skeleton();
         for (std::size_t joint = 0; joint < skeleton.jointCount(); ++joint)
-        {
-            const osg::Matrixd matrix = character.jointToModel(joint).value() * toScene;
-            std::vector<osg::Vec3d>& places = joints[skeleton.joint(joint).name];
             for (const osg::Vec3d& point : {osg::Vec3d(), osg::Vec3d(1, 0, 0), osg::Vec3d(0, 1, 0)})
-                places.push_back(point * matrix);
-        }
+                points["joint " + skeleton.joint(joint).name].push_back(point * character.jointToModel(joint).value() *
+                                                                        toScene);
     }
 
     const int _clip;
@@ -104,52 +92,21 @@ private:
     AnimatedCharacter* _character = nullptr;
 };
 
-/// The largest distance of the found points from the expected ones; huge if a name or a point is missing.
-template <typename Points>
-double distanceBetween(const Points& expected, const Points& found)
-{
-    double most = 0.0;
-    for (std::size_t i = 0; i < expected.size(); ++i)
-        if constexpr (std::is_same_v<Points, std::vector<osg::Vec3d>>)
-            most = std::max(most, i < found.size() ? (expected[i] - found[i]).length() : 1e30);
-        else
-            most = std::max(most, i < found.size() ? distanceBetween(expected[i], found[i]) : 1e30);
-    return most;
-}
-
-/// The scene as GLB and back. Empty if one of the two fails or warns, which fails the test.
-inline osg::ref_ptr<osg::Group> throughGlb(const osg::Node& scene, const std::vector<std::string>& warnings = {})
-{
-    gltf::Messages messages;
-    gltf::Report report(messages);
-    const Result<std::string> glb = gltf::exportModel(scene, report);
-    EXPECT_TRUE(glb) << glb.error().message;
-    EXPECT_EQ(messages.warnings, warnings);
-    if (!glb) return nullptr;
-    const Result<gltf::ImportedModel> model = gltf::importModel(glb.value(), "", {});
-    EXPECT_TRUE(model) << model.error().message;
-    if (!model) return nullptr;
-    EXPECT_EQ(model.value().messages.warnings, std::vector<std::string>());
-    return model.value().root;
-}
-
 /// Both scenes have the same vertices and joints at that time, within 1e-5 of the size.
 inline void expectSamePose(osg::Node& expected, osg::Node& found, int clip, double time)
 {
     const PosedScene before(expected, clip, time), after(found, clip, time);
     const double allowed = 1e-5 * before.size();
-    for (const auto& [key, vertices] : before.meshes)
+    for (const auto& [name, places] : before.points)
     {
-        const auto place = after.meshes.find(key);
-        ASSERT_NE(place, after.meshes.end()) << key.first << " of " << key.second << " vertices is missing";
-        EXPECT_LE(distanceBetween(vertices, place->second), allowed)
-            << key.first << ", clip " << clip << " at " << time;
-    }
-    for (const auto& [name, places] : before.joints)
-    {
-        const auto place = after.joints.find(name);
-        ASSERT_NE(place, after.joints.end()) << "joint " << name << " is missing";
-        EXPECT_LE(distanceBetween(places, place->second), allowed) << name << ", clip " << clip << " at " << time;
+        SCOPED_TRACE(name + ", clip " + std::to_string(clip) + " at " + std::to_string(time));
+        const auto others = after.points.find(name);
+        ASSERT_NE(others, after.points.end());
+        ASSERT_EQ(others->second.size(), places.size());
+        double largest = 0.0;
+        for (std::size_t i = 0; i < places.size(); ++i)
+            largest = std::max(largest, (places[i] - others->second[i]).length());
+        EXPECT_LE(largest, allowed);
     }
 }
 
@@ -178,6 +135,27 @@ inline void expectSameClips(osg::Node& expected, osg::Node& found)
         for (const double share : {0.0, 0.31, 0.77, 1.0})
             expectSamePose(expected, found, static_cast<int>(clip), share * clips[clip].duration());
     }
+}
+
+/// The scene as GLB; empty if the export fails, which fails the test. warnings: those that are expected.
+inline std::string glbOf(const osg::Node& scene, const std::vector<std::string>& warnings = {})
+{
+    gltf::Messages messages;
+    gltf::Report report(messages);
+    const Result<std::string> glb = gltf::exportModel(scene, report);
+    EXPECT_TRUE(glb) << glb.error().message;
+    EXPECT_EQ(messages.warnings, warnings);
+    return glb ? glb.value() : "";
+}
+
+/// The scene as GLB and back. Null if one of the two fails; the import may not warn.
+inline osg::ref_ptr<osg::Group> throughGlb(const osg::Node& scene, const std::vector<std::string>& warnings = {})
+{
+    const Result<gltf::ImportedModel> model = gltf::importModel(glbOf(scene, warnings), "", {});
+    EXPECT_TRUE(model) << model.error().message;
+    if (!model) return nullptr;
+    EXPECT_EQ(model.value().messages.warnings, std::vector<std::string>());
+    return model.value().root;
 }
 
 } // namespace osgGpuAnimation

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "plugin/PackedDocument.h"
 #include "plugin/PointerFile.h"
 
 #include <gtest/gtest.h>
@@ -46,47 +45,6 @@ TEST(SecondVisitsTest, pointersOfOneAnimationAreForgottenInTheNext)
             EXPECT_EQ(weightAtEnd(model, clip, morph), expected[clip][morph]) << clip << ' ' << morph;
     const Clip& last = model.set->clips()[3];
     EXPECT_EQ(last.at(last.keyframeCount() - 1, 0)->translation.x, 5.0f);
-}
-
-/// A factor that the file leaves out rests at the specification's default.
-TEST(SecondVisitsTest, propertiesRestAtTheirDefaults)
-{
-    PointerFile file;
-    file.quad("red", 0, 0, file.material("red", {1, 0, 0, 1}, true));
-    file.animation("fade");
-    file.animate("/materials/0/pbrMetallicRoughness/roughnessFactor", TINYGLTF_TYPE_SCALAR, {0, 0.5f});
-    file.animate("/materials/0/pbrMetallicRoughness/metallicFactor", TINYGLTF_TYPE_SCALAR, {0, 0.5f});
-    Json json = file.document();
-    for (const char* member : {"roughnessFactor", "metallicFactor"})
-        json["materials"][0]["pbrMetallicRoughness"].erase(member);
-    const ImportedModel model = importedFrom(json);
-    ASSERT_TRUE(model.set);
-    ASSERT_EQ(model.set->morphs().size(), 2u);
-    for (const MorphWeights& property : model.set->morphs())
-        EXPECT_EQ(property.defaults, std::vector<float>{1.0f}) << property.name;
-}
-
-/// Indices of sparse elements up to the last one are good; the next one is not.
-TEST(SecondVisitsTest, sparseIndicesEndBelowTheCount)
-{
-    for (const std::uint8_t index : {std::uint8_t(9), std::uint8_t(10)})
-    {
-        PackedDocument file;
-        const std::size_t indices = file.addView(std::string(1, static_cast<char>(index)));
-        const std::size_t values = file.addView(std::string(4, '\0'));
-        file.accessor("SCALAR", TINYGLTF_COMPONENT_TYPE_FLOAT, 10, -1);
-        file.json["accessors"][0]["sparse"] = {
-            {"count", 1},
-            {"indices", {{"bufferView", indices}, {"componentType", TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE}}},
-            {"values", {{"bufferView", values}}}};
-        const Result<tinygltf::Model> model = file.load();
-        EXPECT_EQ(static_cast<bool>(model), index == 9);
-        if (!model)
-        {
-            EXPECT_NE(model.error().message.find("indices below 10, found 10"), std::string::npos)
-                << model.error().message;
-        }
-    }
 }
 
 } // namespace

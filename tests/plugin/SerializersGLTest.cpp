@@ -1,14 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "plugin/SharedAssets.h"
+#include "plugin/ModelImport.h"
 #include "plugin/StoredScene.h"
-#include "support/PrimitiveCount.h"
 #include "support/ViewerGLTest.h"
-
-#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-
-#include <osgUtil/Optimizer>
-
-#include <map>
 
 // A scene from an .osgb, .osgt or .osgx file shows the same poses and pictures at the same times.
 
@@ -18,22 +11,15 @@ namespace osgGpuAnimation
 namespace
 {
 
-struct ModelCase
-{
-    const char* name;
-    const char* shared; ///< below the shared folder; else our own scene
-    const char* scene;
-};
-
-class SerializersGLTest : public ViewerGLTest, public ::testing::WithParamInterface<ModelCase>
+class SerializersGLTest : public ViewerGLTest, public ::testing::WithParamInterface<const char*>
 {
 protected:
     int pictureSide() const override { return 128; }
 
-    static std::string file()
+    void SetUp() override
     {
-        if (GetParam().shared) return sharedFile(GetParam().shared);
-        return ownScene(GetParam().scene);
+        ViewerGLTest::SetUp();
+        if (modelFile(GetParam()).empty()) GTEST_SKIP() << "there is no " << GetParam();
     }
 
     /// The whole scene in the picture, in a quarter view.
@@ -59,44 +45,17 @@ protected:
         return taken;
     }
 
-    /// Nine characters at different times.
-    static osg::ref_ptr<AnimatedCrowd> makeCrowd()
-    {
-        const osg::ref_ptr<osg::Node> model = osgDB::readRefNodeFile(file());
-        osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*findCharacter(*model));
-        AnimationController controller(crowd->getSharedAnimationSet());
-        EXPECT_TRUE(controller.play(0));
-        const double radius = model->getBound().radius();
-        for (int i = 0; i < 9; ++i)
-        {
-            controller.seek(0.13 * i);
-            EXPECT_TRUE(crowd->add(osg::Matrixd::translate(i % 3 * radius, i / 3 * radius, 0.0), controller));
-        }
-        return crowd;
-    }
-
     StoredScene files;
-};
-
-const ModelCase models[] = {
-    {"Fox", "assets/Fox/Fox.glb", nullptr},
-    {"CesiumMan", "assets/CesiumMan/CesiumMan.glb", nullptr},
-    {"Knight", "assets/Knight/Knight.glb", nullptr},
-    {"AnimatedMorphCube", "assets/AnimatedMorphCube/AnimatedMorphCube.gltf", nullptr},
-    {"SplinesAndSteps", "assets/interpolation_test/interpolation_test.gltf", nullptr},
-    {"Wanderer", nullptr, "Wanderer.glb"},
-    {"Serpent", nullptr, "Serpent.glb"},
 };
 
 } // namespace
 
 TEST_P(SerializersGLTest, filesShowTheSamePosesAndPictures)
 {
-    if (GetParam().shared) SKIP_WITHOUT_SHARED_FILE(GetParam().shared);
-    for (const std::string format : {"osgb", "osgt", "osgx"})
+    for (const char* format : storedFormats)
     {
         SCOPED_TRACE(format);
-        const osg::ref_ptr<osg::Node> original = osgDB::readRefNodeFile(file());
+        const osg::ref_ptr<osg::Node> original = osgDB::readRefNodeFile(modelFile(GetParam()));
         ASSERT_TRUE(original);
         AnimationController& first = findCharacter(*original)->getController();
         first.setSpeed(0.8);
@@ -123,51 +82,12 @@ TEST_P(SerializersGLTest, filesShowTheSamePosesAndPictures)
     }
 }
 
-TEST_P(SerializersGLTest, theOptimizerMayComeBefore)
-{
-    if (GetParam().shared) SKIP_WITHOUT_SHARED_FILE(GetParam().shared);
-    const osg::ref_ptr<osg::Node> original = osgDB::readRefNodeFile(file());
-    const auto expected = pictures(*original);
-    const osg::ref_ptr<osg::Node> other = osgDB::readRefNodeFile(file());
-    osgUtil::Optimizer().optimize(other, osgUtil::Optimizer::DEFAULT_OPTIMIZATIONS);
-    const osg::ref_ptr<osg::Node> read = files.throughFile(*other, "osgb");
-    ASSERT_TRUE(read);
-    const auto found = pictures(*read);
-    for (std::size_t i = 0; i < expected.size(); ++i)
-        EXPECT_EQ(Picture::pixelsDifferent(*expected[i], *found[i], 0.0f), 0) << "picture " << i;
-}
-
-TEST_P(SerializersGLTest, crowdsAtLevelsOfDetailDrawTheSameTriangles)
-{
-    if (GetParam().shared) SKIP_WITHOUT_SHARED_FILE(GetParam().shared);
-    const osg::ref_ptr<PrimitiveCount> count = new PrimitiveCount;
-    count->attach(*viewer().getCamera(), picture());
-    const osg::ref_ptr<AnimatedCrowd> crowd = makeCrowd();
-    std::map<float, std::vector<osg::ref_ptr<osg::Node>>> read; // by pixel error
-    for (const float pixels : {0.5f, 4.0f})
-    {
-        ASSERT_TRUE(crowd->getMeshes().setPixelError(pixels));
-        for (const char* format : {"osgb", "osgt", "osgx"})
-            read[pixels].push_back(files.throughFile(*crowd, format));
-    }
-    for (const auto& [pixels, crowds] : read)
-    {
-        SCOPED_TRACE(pixels);
-        ASSERT_TRUE(crowd->getMeshes().setPixelError(pixels));
-        const auto expected = pictures(*crowd);
-        const GLuint primitives = count->primitives();
-        for (const osg::ref_ptr<osg::Node>& again : crowds)
-        {
-            ASSERT_TRUE(again);
-            const auto found = pictures(*again);
-            EXPECT_EQ(count->primitives(), primitives);
-            for (std::size_t i = 0; i < expected.size(); ++i)
-                EXPECT_EQ(Picture::pixelsDifferent(*expected[i], *found[i], 0.0f), 0) << "picture " << i;
-        }
-    }
-}
-
-INSTANTIATE_TEST_SUITE_P(Models, SerializersGLTest, ::testing::ValuesIn(models),
-                         [](const auto& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(Models, SerializersGLTest,
+                         ::testing::Values("assets/Fox/Fox.glb", "assets/CesiumMan/CesiumMan.glb",
+                                           "assets/Knight/Knight.glb",
+                                           "assets/AnimatedMorphCube/AnimatedMorphCube.gltf",
+                                           "assets/interpolation_test/interpolation_test.gltf", "Wanderer.glb",
+                                           "Serpent.glb"),
+                         [](const auto& info) { return gltf::nameOfFile(info.param); });
 
 } // namespace osgGpuAnimation

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "plugin/StoredScene.h"
-#include "support/NotifyLog.h"
+#include "plugin/StoredTest.h"
 
 #include <osgGpuAnimation/looks/Environment.h>
 
-#include <gtest/gtest.h>
 #include <osg/MatrixTransform>
 
-#include <algorithm>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 namespace osgGpuAnimation
 {
@@ -20,7 +15,7 @@ namespace
 {
 
 /// Surroundings in OSG's own formats.
-class StoredEnvironmentTest : public ::testing::Test
+class StoredEnvironmentTest : public StoredSceneTest
 {
 protected:
     void SetUp() override
@@ -31,21 +26,13 @@ protected:
         environment->setName("surroundings");
         environment->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::ON);
         environment->addChild(new osg::MatrixTransform(osg::Matrix::translate(1, 2, 3)));
-        osg::setNotifyHandler(log);
+        StoredSceneTest::SetUp();
     }
-
-    void TearDown() override { osg::setNotifyHandler(new osg::StandardNotifyHandler); }
 
     /// The environment from a file of that format; null if it cannot be read.
     osg::ref_ptr<Environment> read(const char* format) const
     {
         return dynamic_cast<Environment*>(files.throughFile(*environment, format).get());
-    }
-
-    std::string textOf(const std::string& file) const
-    {
-        std::ifstream stream(file);
-        return {std::istreambuf_iterator<char>(stream), {}};
     }
 
     /// Colours that differ, without a file's name, so that OSG stores the pixels.
@@ -64,57 +51,45 @@ protected:
                std::memcmp(a.data(), b.data(), a.getTotalSizeInBytes()) == 0;
     }
 
-    StoredScene files;
-    osg::ref_ptr<Environment> environment = new Environment;
-    osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::WARN);
+    const osg::ref_ptr<Environment> environment = new Environment;
 };
-
-const char* const formats[] = {"osgb", "osgt", "osgx"};
 
 } // namespace
 
-TEST_F(StoredEnvironmentTest, settingsAndChildrenAreKept)
-{
-    for (const char* format : formats)
-    {
-        SCOPED_TRACE(format);
-        const osg::ref_ptr<Environment> copy = read(format);
-        ASSERT_TRUE(copy);
-        EXPECT_EQ(copy->getIntensity(), 0.7f);
-        EXPECT_EQ(copy->getRotation(), 1.3f);
-        EXPECT_TRUE(copy->getToneMapping());
-        EXPECT_EQ(copy->getNumChildren(), 1u);
-        EXPECT_EQ(copy->getPanorama(), nullptr);
-        EXPECT_EQ(copy->getFaces(), nullptr);
-        ASSERT_TRUE(copy->getStateSet());
-        EXPECT_EQ(copy->getStateSet()->getMode(GL_LIGHTING), osg::StateAttribute::ON);
-    }
-    EXPECT_EQ(log->text, "");
-}
-
-TEST_F(StoredEnvironmentTest, panoramasAndFacesAreKeptOnce)
+TEST_F(StoredEnvironmentTest, settingsChildrenPanoramasAndFacesAreKept)
 {
     const osg::ref_ptr<osg::Image> panorama = picture(8, 4);
     const osg::ref_ptr<osg::TextureCubeMap> faces = new osg::TextureCubeMap;
     for (unsigned int face = 0; face < 6; ++face)
-        faces->setImage(face, picture(4, 4));
-    for (const char* format : formats)
     {
-        SCOPED_TRACE(format);
-        ASSERT_TRUE(environment->setPanorama(panorama));
-        osg::ref_ptr<Environment> copy = read(format);
-        ASSERT_TRUE(copy && copy->getPanorama());
-        EXPECT_TRUE(haveSamePixels(*copy->getPanorama(), *panorama));
-        EXPECT_EQ(copy->getFaces(), nullptr);
-        EXPECT_EQ(copy->getIntensity(), 0.7f);
-        ASSERT_TRUE(environment->setFaces(faces));
-        copy = read(format);
-        ASSERT_TRUE(copy && copy->getFaces());
-        EXPECT_TRUE(haveSamePixels(*copy->getFaces()->getImage(5), *faces->getImage(5)));
-        EXPECT_EQ(copy->getPanorama(), nullptr);
-        // What is made of the pictures has 4.7 MB.
-        EXPECT_LT(std::filesystem::file_size(files.folder.file(std::string("scene.") + format)), 20000u);
+        const osg::ref_ptr<osg::Image> image = picture(4, 4);
+        image->data()[0] = static_cast<unsigned char>(face);
+        faces->setImage(face, image);
     }
+    for (const char* format : storedFormats)
+        for (const char* kind : {"studio", "panorama", "faces"})
+        {
+            SCOPED_TRACE(std::string(kind) + ", " + format);
+            const bool hasPanorama = *kind == 'p', hasFaces = *kind == 'f';
+            ASSERT_TRUE(!hasPanorama || environment->setPanorama(panorama));
+            ASSERT_TRUE(!hasFaces || environment->setFaces(faces));
+            const osg::ref_ptr<Environment> copy = read(format);
+            ASSERT_TRUE(copy);
+            EXPECT_EQ(copy->getIntensity(), 0.7f);
+            EXPECT_EQ(copy->getRotation(), 1.3f);
+            EXPECT_TRUE(copy->getToneMapping());
+            EXPECT_EQ(copy->getNumChildren(), 1u);
+            ASSERT_TRUE(copy->getStateSet());
+            EXPECT_EQ(copy->getStateSet()->getMode(GL_LIGHTING), osg::StateAttribute::ON);
+            ASSERT_EQ(copy->getPanorama() != nullptr, hasPanorama);
+            ASSERT_EQ(copy->getFaces() != nullptr, hasFaces);
+            EXPECT_TRUE(!hasPanorama || haveSamePixels(*copy->getPanorama(), *panorama));
+            for (unsigned int face = 0; hasFaces && face < 6; ++face)
+                EXPECT_TRUE(haveSamePixels(*copy->getFaces()->getImage(face), *faces->getImage(face))) << face;
+            // What is made of the pictures has 4.7 MB.
+            EXPECT_LT(std::filesystem::file_size(files.folder.file(std::string("scene.") + format)), 20000u);
+            environment->setStudio();
+        }
     EXPECT_EQ(log->text, "");
 }
 
@@ -124,7 +99,7 @@ TEST_F(StoredEnvironmentTest, aPictureThatIsNoLongerThereLeavesTheStudio)
     panorama->setFileName("no_longer_there.png");
     panorama->setWriteHint(osg::Image::EXTERNAL_FILE);
     ASSERT_TRUE(environment->setPanorama(panorama));
-    for (const char* format : formats)
+    for (const char* format : storedFormats)
     {
         SCOPED_TRACE(format);
         log->text.clear();
@@ -145,16 +120,11 @@ TEST_F(StoredEnvironmentTest, settingsOutOfRangeMakeTheFileUnreadable)
         {"Surroundings 1e300 ", "osgGpuAnimation: surroundings of the intensity 1000000"},
         {"Surroundings many ", "expected a number, found \"many\""},
     };
-    ASSERT_TRUE(read("osgt"));
-    const std::string text = textOf(files.folder.file("scene.osgt"));
-    const std::size_t place = text.find("Surroundings 0.");
-    ASSERT_NE(place, std::string::npos) << text;
     for (const auto& [fault, message] : faults)
     {
-        std::string faulty = text;
-        faulty.replace(place, text.find(' ', place + 13) + 1 - place, fault);
         log->text.clear();
-        EXPECT_EQ(osgDB::readRefNodeFile(files.folder.write("faulty.osgt", faulty)), nullptr) << fault;
+        const std::string text = replaced(textOf(*environment), "Surroundings 0[^ ]* ", fault);
+        EXPECT_EQ(osgDB::readRefNodeFile(files.folder.write("faulty.osgt", text)), nullptr) << fault;
         EXPECT_NE(log->text.find(message), std::string::npos) << log->text;
     }
 }

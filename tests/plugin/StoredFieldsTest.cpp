@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: MIT
-#include "plugin/ModelBuilder.h"
-#include "plugin/StoredScene.h"
+#include "plugin/StoredTest.h"
 #include "support/Limb.h"
-#include "support/NotifyLog.h"
 
 #include <osgGpuAnimation/animation/AnimationLayer.h>
 #include <osgGpuAnimation/animation/RootMotion.h>
+#include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/CharacterKeys.h>
+#include <osgGpuAnimation/nodes/GroundFeet.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
-
-#include <gtest/gtest.h>
+#include <osgGpuAnimation/nodes/RootMotionCallback.h>
+#include <osgGpuAnimation/nodes/SpringBones.h>
 
 #include <cstring>
+#include <limits>
+#include <optional>
+#include <tuple>
 
 namespace osgGpuAnimation
 {
@@ -20,11 +25,9 @@ namespace osgGpuAnimation
 namespace
 {
 
-const char* const storedFormats[] = {"osgb", "osgt", "osgx"};
-
 /// Each field of what is stored, with a value that no other field has: a field that is forgotten or mistaken for its
 /// neighbour comes back as another number.
-class StoredFieldsTest : public ::testing::Test
+class StoredFieldsTest : public StoredSceneTest
 {
 protected:
     void SetUp() override
@@ -40,30 +43,15 @@ protected:
             model.animation(name);
             model.slide(arm);
         }
-        scene = osgDB::readRefNodeFile(files.folder.write("flag.gltf", model.text()));
-        ASSERT_TRUE(scene);
-        osg::setNotifyHandler(log);
+        readModel(model);
+        StoredSceneTest::SetUp();
     }
 
     void TearDown() override
     {
-        osg::setNotifyHandler(new osg::StandardNotifyHandler);
+        StoredSceneTest::TearDown();
         EXPECT_EQ(log->text, "");
     }
-
-    AnimatedCharacter& character() { return *findCharacter(*scene); }
-
-    /// The character from a file of that format. The test fails without one.
-    osg::ref_ptr<AnimatedCharacter> read(const char* format)
-    {
-        const osg::ref_ptr<osg::Node> node = files.throughFile(*scene, format);
-        EXPECT_TRUE(node && findCharacter(*node)) << format;
-        return node ? findCharacter(*node) : nullptr;
-    }
-
-    StoredScene files;
-    osg::ref_ptr<osg::Node> scene;
-    osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::WARN);
 };
 
 auto fieldsOf(const Fade::State& fade)
@@ -172,7 +160,7 @@ TEST_F(StoredFieldsTest, ofRootMotion)
         transform.translation = glm::vec4(glm::vec3(static_cast<float>(i)), 0);
         parts.data.push_back(transform);
     }
-    parts.markers = {{1.25, "step"}};
+    parts.markers = {{1.25, "step"}, {1.5, ""}};
     parts.rootMotion = std::make_shared<const RootMotionCurve>(curve);
     const Result<Clip> clip = Clip::create(parts);
     ASSERT_TRUE(clip) << clip.error().message;
@@ -189,6 +177,9 @@ TEST_F(StoredFieldsTest, ofRootMotion)
         EXPECT_EQ(found.times(), parts.times);
         ASSERT_EQ(found.data().size(), parts.data.size());
         EXPECT_EQ(std::memcmp(found.data().data(), parts.data.data(), parts.data.size() * sizeof(JointTransform)), 0);
+        ASSERT_EQ(found.markers().size(), 2u);
+        EXPECT_EQ(found.markers()[0].name, "step");
+        EXPECT_EQ(found.markers()[0].time, 1.25);
         ASSERT_TRUE(found.rootMotion());
         const RootMotionCurve& motion = *found.rootMotion();
         EXPECT_EQ(motion.joint, curve.joint);
@@ -222,9 +213,18 @@ TEST_F(StoredFieldsTest, ofConstraints)
     ConstraintHandle looking = made->getController().constraint("look");
     ASSERT_TRUE(looking.setTarget({2, 3, 4}) && looking.setShownTarget({7, 8, 9}));
     scene = made;
+    made->getController().advance(0.2); // on the way to the target
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*made);
+    ASSERT_TRUE(crowd->add(osg::Matrixd(), made->getController()));
     for (const char* format : storedFormats)
     {
         SCOPED_TRACE(format);
+        const osg::ref_ptr<osg::Node> readCrowd = files.throughFile(*crowd, format);
+        ASSERT_TRUE(readCrowd);
+        AnimationController first = made->getController();
+        AnimationController instance = dynamic_cast<AnimatedCrowd&>(*readCrowd).getInstances().controllerCopy(0);
+        EXPECT_LE(paletteDifference(first, instance), 1e-6f);
+        EXPECT_LE(paletteDifference((first.advance(0.3), first), (instance.advance(0.3), instance)), 1e-6f);
         const osg::ref_ptr<AnimatedCharacter> back = read(format);
         ASSERT_TRUE(back);
         const std::vector<Constraint>& found = back->getAnimationSet().constraints();
@@ -298,22 +298,139 @@ TEST_F(StoredFieldsTest, ofMorphTargets)
     }
 }
 
-TEST_F(StoredFieldsTest, ofAnAttachmentByNumberWithAnOffset)
+TEST_F(StoredFieldsTest, ofAttachments)
 {
-    const osg::ref_ptr<JointAttachment> attachment = new JointAttachment(1);
-    attachment->setOffset(osg::Matrixd::rotate(0.5, 0, 0, 1) * osg::Matrixd::translate(1, 2, 3));
-    character().addChild(attachment);
-    for (const char* format : storedFormats)
+    const osg::ref_ptr<JointAttachment> byNumber = new JointAttachment(1), byName = new JointAttachment("arm");
+    byNumber->setOffset(osg::Matrixd::rotate(0.5, 0, 0, 1) * osg::Matrixd::translate(1, 2, 3));
+    byName->addChild(new osg::Group);
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(character());
+    const AnimationController controller(crowd->getSharedAnimationSet());
+    ASSERT_TRUE(crowd->remove(crowd->add(osg::Matrixd(), controller).value()));
+    ASSERT_TRUE(crowd->add(osg::Matrixd(), controller));
+    byName->setInstance(crowd->add(osg::Matrixd::translate(7, 0, 0), controller).value());
+    for (const osg::ref_ptr<osg::Group>& parent :
+         {osg::ref_ptr<osg::Group>(&character()), osg::ref_ptr<osg::Group>(crowd)})
     {
-        const osg::ref_ptr<AnimatedCharacter> back = read(format);
-        ASSERT_TRUE(back);
-        const auto* const found = dynamic_cast<JointAttachment*>(back->getChild(back->getNumChildren() - 1));
-        ASSERT_TRUE(found) << format;
-        EXPECT_EQ(found->getJoint(), 1) << format;
-        EXPECT_EQ(found->getJointName(), "") << format;
-        EXPECT_TRUE(found->getOffset() == attachment->getOffset()) << format;
-        EXPECT_FALSE(found->getInstance()) << format;
+        parent->addChild(byNumber);
+        parent->addChild(byName);
+        for (const char* format : storedFormats)
+        {
+            SCOPED_TRACE(format);
+            const osg::ref_ptr<osg::Node> node = files.throughFile(*parent, format);
+            ASSERT_TRUE(node);
+            const osg::Group& back = *node->asGroup();
+            const auto* const first = dynamic_cast<const JointAttachment*>(back.getChild(back.getNumChildren() - 2));
+            const auto* const second = dynamic_cast<const JointAttachment*>(back.getChild(back.getNumChildren() - 1));
+            ASSERT_TRUE(first && second);
+            EXPECT_EQ(first->getJoint(), 1);
+            EXPECT_EQ(first->getJointName(), "");
+            EXPECT_TRUE(first->getOffset() == byNumber->getOffset());
+            EXPECT_FALSE(first->getInstance());
+            EXPECT_EQ(second->getJointName(), "arm");
+            EXPECT_EQ(second->getNumChildren(), 1u);
+            if (const auto* const read = dynamic_cast<const AnimatedCrowd*>(node.get()))
+            {
+                ASSERT_TRUE(second->getInstance());
+                EXPECT_EQ(read->getPlacement(*second->getInstance()).getTrans(), osg::Vec3d(7, 0, 0));
+            }
+        }
     }
+}
+
+TEST_F(StoredFieldsTest, ofCallbacks)
+{
+    character().addUpdateCallback(new RootMotionCallback);
+    dynamic_cast<CharacterKeys&>(*character().getEventCallback()).setFadeSeconds(1.75);
+    for (const bool hasAny : {true, false})
+    {
+        if (!hasAny) character().setUpdateCallback(nullptr);
+        if (!hasAny) character().setEventCallback(nullptr);
+        for (const char* format : storedFormats)
+        {
+            const osg::ref_ptr<AnimatedCharacter> back = read(format);
+            ASSERT_TRUE(back);
+            EXPECT_EQ(dynamic_cast<RootMotionCallback*>(back->getUpdateCallback()) != nullptr, hasAny) << format;
+            const auto* keys = dynamic_cast<const CharacterKeys*>(back->getEventCallback());
+            ASSERT_EQ(keys != nullptr, hasAny) << format;
+            EXPECT_EQ(keys ? keys->getFadeSeconds() : 1.75, 1.75) << format;
+        }
+    }
+}
+
+TEST_F(StoredFieldsTest, ofFeetOnTheGround)
+{
+    const osg::ref_ptr<osg::Group> ground = new osg::Group;
+    ground->setName("hill \"1\" <&{ä");
+    const osg::ref_ptr<GroundFeet> feet = new GroundFeet(*ground);
+    ASSERT_TRUE(feet->setLegs({{"left", "toes", 0.1, "down", "up"}, {"right \"leg\""}}));
+    feet->setTraversalMask(0x80000001u);
+    EXPECT_TRUE(feet->setReach(0.3) && feet->setMaxTilt(0.2) && feet->setLockDistance(0.0) && feet->setWeight(0.5));
+    character().addUpdateCallback(feet);
+    for (const bool isNear : {false, true})
+        for (const char* format : storedFormats)
+        {
+            SCOPED_TRACE(format);
+            EXPECT_TRUE(!isNear || feet->setMaxDistance(20.25));
+            const osg::ref_ptr<AnimatedCharacter> stored = read(format);
+            ASSERT_TRUE(stored);
+            auto* back = dynamic_cast<GroundFeet*>(stored->getUpdateCallback());
+            ASSERT_TRUE(back);
+            EXPECT_EQ(back->getGroundName(), ground->getName());
+            EXPECT_EQ(back->getTraversalMask(), 0x80000001u);
+            EXPECT_EQ(back->getReach(), 0.3);
+            EXPECT_EQ(back->getMaxTilt(), 0.2);
+            EXPECT_EQ(back->getLockDistance(), 0.0);
+            EXPECT_EQ(back->getWeight(), 0.5);
+            EXPECT_EQ(back->getMaxDistance(), feet->getMaxDistance());
+            ASSERT_EQ(back->getLegs().size(), 2u);
+            EXPECT_EQ(back->getLegs()[0].toe, "toes");
+            EXPECT_EQ(back->getLegs()[0].sole, 0.1);
+            EXPECT_EQ(back->getLegs()[0].touchMarker, "down");
+            EXPECT_EQ(back->getLegs()[0].leaveMarker, "up");
+            EXPECT_EQ(back->getLegs()[1].constraint, "right \"leg\"");
+        }
+}
+
+TEST_F(StoredFieldsTest, ofSprings)
+{
+    const osg::ref_ptr<SpringBones> springs = new SpringBones;
+    SpringChain chain{{{"arm", 3.0f, 0.25f, 0.5f, osg::Vec3(0, 0.6f, 0.8f), 0.125f}, {"hand"}}, {1, 0}};
+    const std::vector<SpringCollider> colliders{{"hand", osg::Vec3(1, 2, 3), std::nullopt, 0.5f},
+                                                {"hand", osg::Vec3(), osg::Vec3(4, 5, 6), 0.75f}};
+    ASSERT_TRUE(springs->setChains({chain}, colliders));
+    springs->setLayer(3);
+    character().addUpdateCallback(springs);
+    for (const double maxDistance : {std::numeric_limits<double>::infinity(), 12.5})
+        for (const char* format : storedFormats)
+        {
+            SCOPED_TRACE(format);
+            springs->setMaxDistance(maxDistance);
+            const osg::ref_ptr<AnimatedCharacter> stored = read(format);
+            ASSERT_TRUE(stored);
+            const auto* back = dynamic_cast<SpringBones*>(stored->getUpdateCallback());
+            ASSERT_TRUE(back);
+            EXPECT_EQ(back->getLayer(), 3u);
+            EXPECT_EQ(back->getMaxDistance(), maxDistance);
+            ASSERT_EQ(back->getChains().size(), 1u);
+            const SpringChain& backChain = back->getChains()[0];
+            EXPECT_EQ(backChain.colliders, chain.colliders);
+            ASSERT_EQ(backChain.joints.size(), 2u);
+            for (std::size_t i = 0; i < 2; ++i)
+            {
+                const SpringJoint &found = backChain.joints[i], &expected = chain.joints[i];
+                EXPECT_EQ(found.joint, expected.joint);
+                EXPECT_EQ(std::tie(found.stiffness, found.drag, found.gravity, found.gravityDirection, found.radius),
+                          std::tie(expected.stiffness, expected.drag, expected.gravity, expected.gravityDirection,
+                                   expected.radius));
+            }
+            ASSERT_EQ(back->getColliders().size(), 2u);
+            for (std::size_t i = 0; i < 2; ++i)
+            {
+                const SpringCollider &found = back->getColliders()[i], &expected = colliders[i];
+                EXPECT_EQ(std::tie(found.joint, found.center, found.tail, found.radius),
+                          std::tie(expected.joint, expected.center, expected.tail, expected.radius));
+            }
+        }
 }
 
 } // namespace

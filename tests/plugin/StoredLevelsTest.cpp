@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "plugin/ModelBuilder.h"
-#include "plugin/SharedAssets.h"
-#include "plugin/StoredArm.h"
+#include "plugin/BumpyTubes.h"
+#include "plugin/StoredTest.h"
 
 #include <osgGpuAnimation/mesh/detail/MeshDetail.h>
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
@@ -10,11 +9,7 @@
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
 
-#include <osg/MatrixTransform>
-
-#include <cmath>
 #include <cstring>
-#include <regex>
 
 // Scenes with levels of detail keep them: reading creates none, unless the stored ones have a fault.
 
@@ -25,33 +20,6 @@ namespace
 {
 
 using Read = osgDB::ReaderWriter::ReadResult;
-
-/// A mesh of 264 triangles: a tube with bumps.
-int bumpyTube(gltf::ModelBuilder& model)
-{
-    constexpr unsigned int sides = 12, rings = 12;
-    std::vector<float> positions, normals;
-    std::vector<unsigned int> indices;
-    for (unsigned int ring = 0; ring < rings; ++ring)
-        for (unsigned int side = 0; side < sides; ++side)
-        {
-            const float angle = 6.2831853f * static_cast<float>(side) / sides;
-            const float radius = 0.5f + 0.02f * static_cast<float>((7 * side + 5 * ring) % 4);
-            positions.insert(positions.end(),
-                             {radius * std::cos(angle), radius * std::sin(angle), 0.25f * static_cast<float>(ring)});
-            normals.insert(normals.end(), {std::cos(angle), std::sin(angle), 0.0f});
-        }
-    for (unsigned int ring = 0; ring + 1 < rings; ++ring)
-        for (unsigned int side = 0; side < sides; ++side)
-        {
-            const unsigned int next = (side + 1) % sides, low = ring * sides, high = low + sides;
-            indices.insert(indices.end(), {low + side, low + next, high + next, low + side, high + next, high + side});
-        }
-    return model.mesh({{"POSITION", model.floats(TINYGLTF_TYPE_VEC3, positions)},
-                       {"NORMAL", model.floats(TINYGLTF_TYPE_VEC3, normals)}},
-                      TINYGLTF_MODE_TRIANGLES,
-                      model.integers(TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, indices));
-}
 
 std::vector<SkinnedGeometry*> meshesOf(const osg::Group& group)
 {
@@ -164,31 +132,17 @@ struct FaultCase
     const char* message; ///< null: none
 };
 
-class StoredLevelsTest : public ::testing::Test
+class StoredLevelsTest : public StoredSceneTest
 {
 protected:
     void SetUp() override
     {
-        gltf::ModelBuilder model;
-        const int arm = model.node("arm"), tube = bumpyTube(model);
-        model.node("upper", arm, tube);
-        model.node("lower", model.node("hand", arm), bumpyTube(model));
-        model.animation("Slide");
-        model.slide(arm);
-        makeCrowd(files.folder.write("tubes.gltf", model.text()));
-        osg::setNotifyHandler(log);
-    }
-
-    void TearDown() override { osg::setNotifyHandler(new osg::StandardNotifyHandler); }
-
-    void makeCrowd(const std::string& file)
-    {
-        scene = osgDB::readRefNodeFile(file);
-        ASSERT_TRUE(scene);
-        ASSERT_TRUE(findCharacter(*scene)->getMeshes().setPixelError(0.5f));
-        crowd = new AnimatedCrowd(*findCharacter(*scene));
+        readModel(gltf::bumpyTubes());
+        ASSERT_TRUE(character().getMeshes().setPixelError(0.5f));
+        crowd = new AnimatedCrowd(character());
         ASSERT_TRUE(crowd->getMeshes().setPixelError(0.5f));
         ASSERT_TRUE(crowd->add({}, AnimationController(crowd->getSharedAnimationSet())));
+        StoredSceneTest::SetUp();
     }
 
     std::string stored(const std::string& format) const
@@ -198,19 +152,10 @@ protected:
         return readBytes(file);
     }
 
-    Read readContent(const std::string& name, const std::string& text)
-    {
-        log->text.clear();
-        return osgDB::Registry::instance()->readNode(files.folder.write(name, text), nullptr);
-    }
-
     /// The crowd of a sound .osgt with a fault, which costs no mesh. Null, with a failure: there is none.
     osg::ref_ptr<AnimatedCrowd> readFaulty(const std::string& sound, const FaultCase& fault)
     {
-        const std::string faulty = std::regex_replace(sound, std::regex(fault.pattern), fault.instead,
-                                                      std::regex_constants::format_first_only);
-        EXPECT_NE(faulty, sound) << "the pattern is not in the file";
-        Read result = readContent("faulty.osgt", faulty);
+        Read result = readContent("faulty.osgt", replaced(sound, fault.pattern, fault.instead));
         EXPECT_NE(log->text.find(fault.message), std::string::npos) << log->text << result.message();
         const osg::ref_ptr<AnimatedCrowd> back = dynamic_cast<AnimatedCrowd*>(result.getNode());
         EXPECT_TRUE(back) << result.message();
@@ -218,10 +163,7 @@ protected:
         return back;
     }
 
-    StoredScene files;
-    osg::ref_ptr<osg::Node> scene;
     osg::ref_ptr<AnimatedCrowd> crowd;
-    osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::WARN);
 };
 
 const FaultCase faults[] = {
@@ -278,23 +220,6 @@ TEST_F(StoredLevelsTest, comeBackAsTheyWere)
     EXPECT_EQ(log->text, "");
 }
 
-TEST_F(StoredLevelsTest, comeBackForRealCharacters)
-{
-    SKIP_WITHOUT_SHARED_FILE("assets/Knight/Knight.glb");
-    makeCrowd(sharedFile("assets/Knight/Knight.glb"));
-    ASSERT_FALSE(CrowdDetail::levels(*crowd)->merged().empty());
-    changeLevels(*crowd);
-    const osg::ref_ptr<osg::Node> read = files.throughFile(*crowd, "osgb");
-    const auto* back = dynamic_cast<AnimatedCrowd*>(read.get());
-    ASSERT_TRUE(back);
-    expectSameMerged(*crowd, *back);
-    const std::vector<SkinnedGeometry*> expected = meshesOf(*crowd), found = meshesOf(*back);
-    ASSERT_EQ(found.size(), expected.size());
-    for (std::size_t mesh = 0; mesh < expected.size(); ++mesh)
-        expectSameLevels(*expected[mesh], *found[mesh]);
-    EXPECT_EQ(log->text, "");
-}
-
 TEST_F(StoredLevelsTest, areMadeWhereAFileHasNone)
 {
     const osg::ref_ptr<AnimatedCrowd> before = new AnimatedCrowd(*crowd);
@@ -326,26 +251,21 @@ TEST_F(StoredLevelsTest, ofChangedMeshesAreNotStored)
 TEST_F(StoredLevelsTest, faultsCostTheLevelsAlone)
 {
     const std::string sound = stored("osgt");
-    changeLevels(*crowd);
-    const std::size_t steps = stepsOf(*meshesOf(*crowd).front()) + 1;
-    for (const FaultCase& fault : faults)
-    {
-        SCOPED_TRACE(fault.name);
-        const osg::ref_ptr<AnimatedCrowd> back = readFaulty(sound, fault);
-        ASSERT_TRUE(back);
-        EXPECT_GE(stepsOf(*meshesOf(*back).front()) + 1, steps) << "made anew";
-    }
-}
-
-TEST_F(StoredLevelsTest, faultsOfMergedPartsCostTheLevelsAlone)
-{
-    const std::string sound = stored("osgt");
     for (const FaultCase& fault : mergedFaults)
     {
         SCOPED_TRACE(fault.name);
         const osg::ref_ptr<AnimatedCrowd> back = readFaulty(sound, fault);
         ASSERT_TRUE(back);
         expectSameMerged(*crowd, *back); // made anew
+    }
+    const std::size_t steps = stepsOf(*meshesOf(*crowd).front());
+    changeLevels(*crowd);
+    for (const FaultCase& fault : faults)
+    {
+        SCOPED_TRACE(fault.name);
+        const osg::ref_ptr<AnimatedCrowd> back = readFaulty(sound, fault);
+        ASSERT_TRUE(back);
+        EXPECT_GE(stepsOf(*meshesOf(*back).front()) + 1, steps) << "made anew";
     }
 }
 

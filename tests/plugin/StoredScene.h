@@ -19,6 +19,9 @@
 namespace osgGpuAnimation
 {
 
+/// OSG's own formats, without the dot.
+constexpr const char* storedFormats[] = {"osgb", "osgt", "osgx"};
+
 /// For tests that store scenes in OSG's own formats: osgDB finds the plugins of the build, and the files are in a
 /// temporary folder.
 class StoredScene

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "plugin/PseudoLoaderTest.h"
-#include "support/NotifyLog.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
@@ -17,32 +16,19 @@ namespace
 {
 
 using StudioPluginTest = PseudoLoaderTest;
-using Read = osgDB::ReaderWriter::ReadResult;
-
-struct FaultCase
-{
-    const char* file;
-    const char* message; ///< a part of it
-};
-
-const FaultCase faults[] = {
-    {"absent.gltf.studio", "absent.gltf"},
-    {"absent.gltf.STUDIO", "absent.gltf"},
-    {"arm.studio", "is not a model's file, like fox.glb in fox.glb.studio"},
-    {"arm.gltf.0x0.crowd.studio", "arm.gltf.0x0.crowd: a crowd of 0x0 is empty"},
-    {"absent.gltf.2x2.crowd.studio", "absent.gltf"},
-    {"arm.gltf.studio.unknown.studio", "arm.gltf.studio.unknown"},
-};
 
 TEST_F(StudioPluginTest, faultsHaveAMessage)
 {
-    for (const FaultCase& fault : faults)
-    {
-        SCOPED_TRACE(fault.file);
-        Read result = read(fault.file);
-        EXPECT_EQ(result.status(), Read::ERROR_IN_READING_FILE);
-        EXPECT_NE(result.message().find(fault.message), std::string::npos) << result.message();
-    }
+    const std::pair<const char*, const char*> faults[] = {
+        {"absent.gltf.studio", "absent.gltf"},
+        {"absent.gltf.STUDIO", "absent.gltf"},
+        {"arm.studio", "is not a model's file, like fox.glb in fox.glb.studio"},
+        {"arm.gltf.0x0.crowd.studio", "arm.gltf.0x0.crowd: a crowd of 0x0 is empty"},
+        {"absent.gltf.2x2.crowd.studio", "absent.gltf"},
+        {"arm.gltf.studio.unknown.studio", "arm.gltf.studio.unknown"},
+    };
+    for (const auto& [file, message] : faults)
+        expectError(file, "", message);
 }
 
 TEST_F(StudioPluginTest, showsCharactersAndCrowds)
@@ -56,10 +42,7 @@ TEST_F(StudioPluginTest, showsCharactersAndCrowds)
         EXPECT_TRUE(studio->getToneMapping());
         EXPECT_TRUE(studio->getNumChildrenRequiringEventTraversal() > 0) << "the home view";
     }
-    osgDB::ReaderWriter* reader = osgDB::Registry::instance()->getReaderWriterForExtension("studio");
-    ASSERT_TRUE(reader);
-    EXPECT_EQ(reader->supportedOptions().count("noRotation"), 1u);
-    EXPECT_EQ(reader->readNode("fox.glb", nullptr).status(), Read::FILE_NOT_HANDLED);
+    EXPECT_EQ(readerOf("studio", {"noRotation"}).readNode("fox.glb", nullptr).status(), Read::FILE_NOT_HANDLED);
 }
 
 TEST_F(StudioPluginTest, aModelThatKeepsYUpStandsOnAGroundOfItsOwnAxes)
@@ -74,10 +57,7 @@ TEST_F(StudioPluginTest, aModelThatKeepsYUpStandsOnAGroundOfItsOwnAxes)
 
 TEST_F(StudioPluginTest, aFileWithoutMeshesIsReadWithAWarning)
 {
-    const osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::WARN);
-    osg::setNotifyHandler(log);
     Read result = read("empty.gltf.studio");
-    osg::setNotifyHandler(new osg::StandardNotifyHandler);
     EXPECT_TRUE(dynamic_cast<const Studio*>(result.getNode())) << result.message();
     EXPECT_NE(log->text.find("nothing to see"), std::string::npos) << log->text;
 }

@@ -9,6 +9,7 @@
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
+#include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
 #include <osgGpuAnimation/nodes/GroundFeet.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
@@ -222,7 +223,8 @@ TEST_F(StoredFieldsTest, ofConstraints)
         const osg::ref_ptr<osg::Node> readCrowd = files.throughFile(*crowd, format);
         ASSERT_TRUE(readCrowd);
         AnimationController first = made->getController();
-        AnimationController instance = dynamic_cast<AnimatedCrowd&>(*readCrowd).getInstances().controllerCopy(0);
+        AnimationController instance =
+            CrowdDetail::instances(dynamic_cast<AnimatedCrowd&>(*readCrowd)).controllerCopy(0);
         EXPECT_LE(paletteDifference(first, instance), 1e-6f);
         EXPECT_LE(paletteDifference((first.advance(0.3), first), (instance.advance(0.3), instance)), 1e-6f);
         const osg::ref_ptr<AnimatedCharacter> back = read(format);

@@ -3,6 +3,8 @@
 #include "plugin/LoadedDocument.h"
 #include "plugin/StoredScene.h"
 
+#include <osgGpuAnimation/mesh/detail/MeshDetail.h>
+
 #include <gtest/gtest.h>
 
 namespace osgGpuAnimation::gltf

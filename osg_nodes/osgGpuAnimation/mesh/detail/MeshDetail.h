@@ -13,12 +13,7 @@ namespace osgGpuAnimation
 struct MeshDetail
 {
     /// The levels, see CharacterMeshes::setPixelError(). The first call creates them from poses of the set.
-    static std::shared_ptr<const LodLevels> levels(const SkinnedGeometry& mesh, const AnimationSet& set)
-    {
-        return mesh._lod->of(mesh, set,
-                             [&](const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& out)
-                             { mesh.computePositions(palette, out); });
-    }
+    static std::shared_ptr<const LodLevels> levels(const SkinnedGeometry& mesh, const AnimationSet& set);
     /// The same without creating any. Null: not created, or the mesh has changed.
     static std::shared_ptr<const LodLevels> findLevels(const SkinnedGeometry& mesh) { return mesh._lod->known(mesh); }
     /// levels: of this mesh, see LodLevels::restored().

@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/bounds/MixBounds.h>
+#include <osgGpuAnimation/animation/detail/ControllerDetail.h>
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/authoring/ClipBuilder.h>
 #include <osgGpuAnimation/authoring/CompactClips.h>
@@ -338,7 +339,8 @@ osg::Matrixd AnimatedCharacter::takeRootMotion()
 void AnimatedCharacter::update(double simulationTime)
 {
     PendingEvents events;
-    if (_updateTime && simulationTime != *_updateTime) _controller->advance(simulationTime - *_updateTime, events);
+    if (_updateTime && simulationTime != *_updateTime)
+        ControllerDetail::advance(*_controller, simulationTime - *_updateTime, events);
     _updateTime = simulationTime;
     updateBounds();
     if (_properties) showProperties();
@@ -375,7 +377,7 @@ void AnimatedCharacter::showProperties()
 
 void AnimatedCharacter::updateBounds()
 {
-    findPlayedClips(*_controller, _playedNow);
+    ControllerDetail::findPlayedClips(*_controller, _playedNow);
     const std::uint64_t constraints = constraintsOf(*_controller);
     if (_playedNow == _played && constraints == _constraints) return;
     std::swap(_played, _playedNow);
@@ -482,7 +484,7 @@ osg::BoundingBox AnimatedCharacter::boundsOf(const std::vector<PlayedClip>& play
 osg::BoundingBox AnimatedCharacter::getCurrentBounds() const
 {
     std::vector<PlayedClip> played;
-    findPlayedClips(*_controller, played);
+    ControllerDetail::findPlayedClips(*_controller, played);
     return boundsOf(played);
 }
 

@@ -346,15 +346,15 @@ void SceneExporter::visitCharacter(const Character& character, const osg::Matrix
                                                      TransformBound::of(glm::make_mat4(toPlace.ptr())));
     if (!reach.fits())
         return _report.warn("character " + quoted(character.getName()) + ": its joints or their inverse binds lie " +
-                            beyondFarthest() + "; left out");
+                            outOfRangeText() + "; left out");
     for (const std::string& clip : reach.clipsLeftOut())
-        _report.warn("clip " + quoted(clip) + ": it takes joints " + beyondFarthest() + "; left out");
+        _report.warn("clip " + quoted(clip) + ": it takes joints " + outOfRangeText() + "; left out");
     std::vector<CharacterMesh> meshes = meshesOf(character, at);
     const auto isFar = [&](const CharacterMesh& each)
     {
         const bool isNear = reach.reaches(*each.mesh, _geometries);
         if (!isNear)
-            _report.warn("mesh " + quoted(each.mesh->getName()) + ": its vertices lie " + beyondFarthest() +
+            _report.warn("mesh " + quoted(each.mesh->getName()) + ": its vertices lie " + outOfRangeText() +
                          "; left out");
         return !isNear;
     };
@@ -501,7 +501,7 @@ void SceneExporter::writeGeometries()
         if (!std::all_of(parts.begin(), parts.end(),
                          [&](const auto& part) { return isNear(reach, _geometries.radiusOf(*part.first)); }))
         {
-            _report.warn("mesh " + quoted(name) + ": its vertices lie " + beyondFarthest() + "; left out");
+            _report.warn("mesh " + quoted(name) + ": its vertices lie " + outOfRangeText() + "; left out");
             continue;
         }
         const std::size_t node =

@@ -141,7 +141,7 @@ Result<void> Importer::makeSet(const NodeTree& tree, const Joints& joints, const
         for (const AffineMatrix& matrix : set.value()->skins()[skin].inverseBinds)
             if (!TransformBound::of(matrix.toColumns()).fits())
                 return Error{elementName("skins", skin) + ".inverseBindMatrices: one takes its joint " +
-                             beyondFarthest()};
+                             outOfRangeText()};
     if (set.value()->paletteSize() > mostPaletteEntries)
         return Error{"skins and joints: " + std::to_string(set.value()->paletteSize()) +
                      " palette entries are needed, at most " + std::to_string(mostPaletteEntries) + " are possible"};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/Playback.h>
+#include <osgGpuAnimation/animation/LoopMode.h>
 #include <osgGpuAnimation/math/Result.h>
 #include <osgGpuAnimation/nodes/CompactedCharacter.h>
 #include <osgGpuAnimation/scene/traversal/SceneVisitor.h>

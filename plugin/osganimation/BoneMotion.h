@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/Clip.h>
+#include <osgGpuAnimation/animation/Channel.h>
+#include <osgGpuAnimation/math/JointTransform.h>
 
 #include <osg/Matrixd>
 #include <osgAnimation/Animation>

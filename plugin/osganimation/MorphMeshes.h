@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/Clip.h>
+#include <osgGpuAnimation/animation/Channel.h>
 #include <osgGpuAnimation/animation/Skeleton.h>
 #include <osgGpuAnimation/mesh/MorphTarget.h>
 

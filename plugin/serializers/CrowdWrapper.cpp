@@ -2,6 +2,7 @@
 #include "serializers/StoredAnimation.h"
 #include "serializers/StoredLevels.h"
 
+#include <osgGpuAnimation/animation/detail/ControllerDetail.h>
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/mesh/lod/CharacterLevels.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
@@ -36,14 +37,14 @@ enum class Playback
 
 Playback playbackOf(const AnimationController& controller)
 {
-    if (!controller.isPlainLoop()) return Playback::Controller;
+    if (!ControllerDetail::isPlainLoop(controller)) return Playback::Controller;
     return controller.clip() < 0 ? Playback::Nothing : Playback::Plain;
 }
 
 void transferPlain(ValueStream& stream, AnimationController& controller)
 {
     std::int32_t clip = controller.clip();
-    double time = controller.time(), speed = controller.speed();
+    double time = controller.time(), speed = controller.layer(0).settings().speed;
     bool isPaused = !controller.isPlaying();
     stream.values(clip, time, speed, isPaused);
     if (!stream.hasRead()) return;

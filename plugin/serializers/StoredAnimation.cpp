@@ -6,9 +6,9 @@
 #include "serializers/StoredCompactClips.h"
 #include "serializers/StoredConstraints.h"
 
-#include <osgGpuAnimation/animation/AnimationLayer.h>
 #include <osgGpuAnimation/animation/Clip.h>
 #include <osgGpuAnimation/animation/keyframes/CompactTracks.h>
+#include <osgGpuAnimation/animation/LayerSnapshot.h>
 #include <osgGpuAnimation/animation/RootMotion.h>
 
 #include <osg/Notify>
@@ -273,7 +273,9 @@ void transferSpace(ValueStream& stream, const AnimationSet& set, LayerSnapshot::
 
 void transferBlends(ValueStream& stream, const AnimationSet& set, LayerSnapshot& layer)
 {
-    stream.property("Parameter").values(layer.parameter.x, layer.parameter.y, layer.isPhaseShared).endLine();
+    stream.property("Parameter")
+        .values(layer.settings.parameter.x, layer.settings.parameter.y, layer.settings.isPhaseShared)
+        .endLine();
     stream.list("Spaces", layer.spaces, [&](LayerSnapshot::ActiveSpace& space) { transferSpace(stream, set, space); });
 }
 
@@ -297,9 +299,10 @@ void transferLayer(ValueStream& stream, const AnimationSet& set, LayerSnapshot& 
 {
     using Layer = AnimationLayer;
     stream.property("Layer").limited("a layer's state", layer.state, PlayState::Ended);
-    stream.limited("a loop mode", layer.loopMode, LoopMode::PingPong).value(layer.speed);
-    stream.limited("a layer's mode", layer.mode, Layer::Mode::Additive);
-    stream.limited("a layer's reference", layer.reference, Layer::Reference::FirstFrame).value(layer.blendPriority);
+    stream.limited("a loop mode", layer.settings.loopMode, LoopMode::PingPong).value(layer.settings.speed);
+    stream.limited("a layer's mode", layer.settings.mode, Layer::Mode::Additive);
+    stream.limited("a layer's reference", layer.settings.reference, Layer::Reference::FirstFrame)
+        .value(layer.settings.blendPriority);
     stream.endLine();
     stream.list("ActiveClips", layer.activeClips,
                 [&](LayerSnapshot::ActiveClip& activeClip) { transferActiveClip(stream, activeClip); });
@@ -337,10 +340,10 @@ void transferController(ValueStream& stream, AnimationController& controller)
     for (std::size_t i = 0; i < layers && stream.isGood(); ++i)
     {
         LayerSnapshot layer;
-        if (!stream.isReading()) layer = controller.layer(i).snapshot();
+        if (!stream.isReading()) layer = LayerSnapshot::of(controller.layer(i));
         transferLayer(stream, controller.set(), layer);
         if (!stream.hasRead()) continue;
-        if (const Result<void> restored = controller.layer(i).restore(layer); !restored)
+        if (const Result<void> restored = layer.restoreTo(controller.layer(i)); !restored)
             OSG_WARN << "osgGpuAnimation: layer " << i << " of a character: " << restored.error().message
                      << "; it does not play" << std::endl;
     }

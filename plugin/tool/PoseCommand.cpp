@@ -39,7 +39,7 @@ Result<int> findClip(const gltf::ImportedModel& model, const PoseRequest& reques
 PoseInstruction instructionAt(const gltf::ImportedModel& model, int clip, double time)
 {
     AnimationController controller(model.set);
-    controller.setLoopMode(AnimationController::LoopMode::Once);
+    controller.setLoopMode(LoopMode::Once);
     if (clip < 0 || !controller.play(static_cast<std::size_t>(clip))) return PoseInstruction();
     controller.seek(time);
     return controller.instruction();

@@ -34,15 +34,6 @@ constexpr std::size_t minSourceLines = 30; ///< shorter sources belong to a neig
 constexpr std::size_t maxShortSources = 10;
 constexpr std::size_t maxReadmeLines = 150;
 
-/// Rooms with more lines. None may be added; a room that has become smaller leaves the list.
-const std::set<std::string> largeRooms = {
-    "osg_nodes/osgGpuAnimation/animation/AnimationController",
-    "osg_nodes/osgGpuAnimation/animation/AnimationLayer",
-    "osg_nodes/osgGpuAnimation/animation/AnimationSet",
-    "osg_nodes/osgGpuAnimation/animation/ClipMixer",
-    "osg_nodes/osgGpuAnimation/animation/Pose",
-};
-
 /// Headers of other people that a folder must not include.
 struct Libraries
 {
@@ -237,10 +228,7 @@ std::vector<std::string> faultsOfSizes(const Texts& texts)
         if (path.back() == 'p' && lines < minSourceLines) shortSources.push_back(path);
     }
     for (const auto& [room, lines] : roomLines)
-        if (lines > maxRoomLines && largeRooms.count(room) == 0)
-            faults.push_back(room + " has " + std::to_string(lines) + " lines");
-        else if (lines <= maxRoomLines && largeRooms.count(room) != 0)
-            faults.push_back(room + " is no large room any more");
+        if (lines > maxRoomLines) faults.push_back(room + " has " + std::to_string(lines) + " lines");
     if (shortSources.size() > maxShortSources)
         for (const std::string& path : shortSources)
             faults.push_back(path + " is one of " + std::to_string(shortSources.size()) + " short sources");
@@ -415,9 +403,6 @@ TEST(PlantedRoomTest, sizesAndEmptyLayersAreSeen)
     EXPECT_TRUE(faultsOfSizes(texts).empty());
     texts["plugin/Long.cpp"] = std::string(maxRoomLines / 2, '\n');
     EXPECT_EQ(faultsOfSizes(texts).size(), 1u);
-    texts.clear();
-    texts[*largeRooms.begin() + ".h"] = "\n";
-    EXPECT_EQ(faultsOfSizes(texts).size(), 1u) << "a room that is large no more";
     texts.clear();
     for (std::size_t room = 0; room <= maxShortSources; ++room)
         texts["plugin/" + std::to_string(room) + "/Room.cpp"] = "\n";

@@ -4,9 +4,10 @@
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/BlendSpace.h>
 #include <osgGpuAnimation/animation/ClipMixer.h>
+#include <osgGpuAnimation/animation/CrossfadeOptions.h>
 #include <osgGpuAnimation/animation/Fade.h>
-#include <osgGpuAnimation/animation/Playback.h>
-#include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/animation/JointPose.h>
+#include <osgGpuAnimation/animation/PlayState.h>
 
 #include <cstdint>
 #include <memory>
@@ -18,31 +19,11 @@
 namespace osgGpuAnimation
 {
 
-class AnimationLayer;
 class JointMask;
 class BlendList;
 class RootMotionBlend;
-struct LayerSnapshot;
 struct LayerStep;
 struct RootMotionCurve;
-
-/// The part of an AnimationController that its layers use.
-class LayerOwner
-{
-protected:
-    friend class AnimationLayer;
-    /// set: null counts as an empty one.
-    explicit LayerOwner(std::shared_ptr<const AnimationSet> set) : _set(AnimationSet::orEmpty(std::move(set))) {}
-    LayerOwner(const LayerOwner&) = default;            ///< Shares the set.
-    LayerOwner& operator=(const LayerOwner&) = default; ///< Shares the set.
-    ~LayerOwner() = default;
-
-    virtual void rebuildInstruction() = 0; ///< rebuilds the pose instruction from all layers
-    /// The phase of another layer that shares its phase with this one; of this clip, if it plays there.
-    virtual std::optional<double> sharedPhase(const AnimationLayer& layer, int clip) const = 0;
-
-    std::shared_ptr<const AnimationSet> _set; ///< never null
-};
 
 /// One layer of an AnimationController. It plays its own clips at their own times over the layers below it, with a
 /// weight and a mask.
@@ -53,7 +34,7 @@ protected:
 ///     gesture.play("Wave");
 ///     gesture.fadeWeight(0.0f, 0.5, FadeCurve::Smooth); // later: releases the arm
 ///
-/// It belongs to its controller. Changes take effect at once, without an advance().
+/// It belongs to its controller. Changes take effect at once, without an advance(). LayerSnapshot stores it.
 class AnimationLayer
 {
 public:
@@ -70,14 +51,26 @@ public:
         RestPose,   ///< the rest pose of the set
         FirstFrame, ///< the first keyframe of the clip itself
     };
-
-    std::size_t index() const { return _index; } ///< below maxLayers
+    /// What the functions of the same names set.
+    struct Settings
+    {
+        double speed = 1.0;                        ///< finite
+        LoopMode loopMode = LoopMode::Loop;        ///< of the current clip and of later ones
+        glm::dvec2 parameter{0.0};                 ///< of blend spaces, finite
+        Mode mode = Mode::Override;                ///< see Mode
+        Reference reference = Reference::RestPose; ///< used in mode Additive
+        int blendPriority = 0;                     ///< the layer's index, unless it was set
+        bool isPhaseShared = false;                ///< see setPhaseShared()
+    };
 
     /// Plays a clip from its beginning (from its end if the speed is negative) without a crossfade, at the layer's
     /// speed and in its loop mode. Error: no such clip; the message lists the existing names, and the layer is
     /// unchanged.
-    Result<void> play(std::size_t clip);
-    Result<void> play(const std::string& name); ///< The same by name.
+    Result<void> play(std::size_t clip) { return crossfade(clip, 0.0); }
+    Result<void> play(const std::string& name) { return crossfade(name, 0.0); } ///< The same by name.
+    /// The same for a blend space, at the layer's parameter, see setParameter(). playback() is that of the clip with
+    /// the largest weight. Errors, with the layer unchanged: the space is null or not made for the layer's set.
+    Result<void> play(std::shared_ptr<const BlendSpace> space) { return crossfade(std::move(space), 0.0); }
 
     /// Fades from the visible mix (a clip, a running crossfade or nothing) to a clip. Clips that fade out play on.
     /// seconds: the length of the fade; 0 replaces the mix at once. Errors, with the layer unchanged: no such clip;
@@ -85,20 +78,13 @@ public:
     Result<void> crossfade(std::size_t clip, double seconds, const CrossfadeOptions& options = {});
     /// The same by name.
     Result<void> crossfade(const std::string& name, double seconds, const CrossfadeOptions& options = {});
-
-    /// The same for a blend space, at the layer's parameter, see setParameter(). With Sync::Phase its clips start at
-    /// the phase of the current clip. clip(), time() and so on refer to the clip with the largest weight. Errors, with
-    /// the layer unchanged: the space is null or not made for the layer's set; those of a clip.
-    Result<void> play(std::shared_ptr<const BlendSpace> space);
-    /// The same with a fade.
+    /// The same for a blend space. With Sync::Phase its clips start at the phase of the current clip. Errors: those of
+    /// play(), and those of a clip.
     Result<void> crossfade(std::shared_ptr<const BlendSpace> space, double seconds,
                            const CrossfadeOptions& options = {});
     /// Sets the parameter of the current blend space and of later ones; spaces that fade out keep theirs. The phase
     /// stays, so the pose is continuous in the parameter. Returns false, without a change, if a number is not finite.
     bool setParameter(double x, double y = 0.0);
-    const glm::dvec2& parameter() const { return _parameter; } ///< initially 0, 0
-    /// The blend space that plays; null: a clip or nothing.
-    std::shared_ptr<const BlendSpace> blendSpace() const;
 
     void pause();  ///< Playing → Paused; no effect in other states
     void resume(); ///< Paused → Playing; no effect in other states
@@ -114,8 +100,6 @@ public:
     bool showPose(double seconds = 0.0, FadeCurve curve = FadeCurve::Linear);
     /// The share of the pose in the layer, in [0, 1]; the clips have the remainder.
     float poseShare() const { return _posed ? static_cast<float>(_posed->share.value()) : 0.0f; }
-    /// The pose, if the layer has one: null before the first pose().
-    const JointPose* findPose() const { return _posed ? _posed->pose.get() : nullptr; }
 
     /// Sets the time of the current clip. seconds: on the time line of the clip, clamped to [0, duration]. Returns
     /// false, without a change, for NaN. Without a clip it has no effect. Ended becomes Playing unless the new time is
@@ -135,26 +119,15 @@ public:
     /// until play(), crossfade() or seek().
     void setLoopMode(LoopMode mode);
 
-    /// The complete state of the layer.
-    LayerSnapshot snapshot() const;
-    /// Restores a snapshot of a layer of the same set, or of a set with equal tracks and clips, and continues exactly.
-    /// Error: the snapshot is not valid for the set; the layer is then unchanged.
-    Result<void> restore(const LayerSnapshot& snapshot);
-
-    PlayState state() const { return _state; }                                  ///< see PlayState
-    bool isPlaying() const { return _state == PlayState::Playing; }             ///< true in state Playing
-    int clip() const { return _mixer.current().clip(); }                        ///< -1 if none was played
-    double time() const { return _mixer.current().time(); }                     ///< seconds, in [0, duration]
-    double duration() const { return _mixer.current().duration(); }             ///< of the current clip
-    double normalizedTime() const { return _mixer.current().normalizedTime(); } ///< [0, 1]
-    double phase() const { return _mixer.current().phase(); }                   ///< see ClipPlayback::phase
-    double speed() const { return _speed; }         ///< 1: the speed of the file; negative: backwards
-    LoopMode loopMode() const { return _loopMode; } ///< the behaviour of the clip at its ends
-    bool isCrossfading() const { return !_mixer.isEmpty() && _mixer.isFading(); } ///< true until a crossfade ends
+    PlayState state() const { return _state; } ///< see PlayState
+    /// The current clip and its time: of a crossfade the new one, of a blend space the one with the largest weight.
+    const ClipPlayback& playback() const { return _mixer.current(); }
+    const ClipMixer& mixer() const { return _mixer; }      ///< all clips that contribute now and their shares
+    const Settings& settings() const { return _settings; } ///< of the layer
 
     /// Sets the layer's weight and ends a fade of the weight. weight: clamped to [0, 1]. Returns false, without a
     /// change, for NaN.
-    bool setWeight(float weight);
+    bool setWeight(float weight) { return fadeWeight(weight, 0.0); }
     /// Fades from the current weight to another one, clamped to [0, 1]. Returns false, without a change, if the weight
     /// is NaN or the seconds are negative or not finite.
     bool fadeWeight(float weight, double seconds, FadeCurve curve = FadeCurve::Linear);
@@ -163,41 +136,35 @@ public:
     /// Copies the weights. A mask that changes may be set again in every frame: one that nobody uses any more is freed.
     /// Errors: the mask does not fit the joints and morphs of this set; MaskTable::maxMasks different masks are in use.
     Result<void> setMask(const JointMask& mask);
-    void clearMask();                                                ///< The layer affects all tracks.
-    std::uint32_t mask() const { return _mask ? _mask->number : 0; } ///< number of the mask in the set, 0: none
+    void clearMask(); ///< The layer affects all tracks.
 
     /// Sets the mode. reference: used in mode Additive only.
     void setMode(Mode mode, Reference reference = Reference::RestPose);
-    Mode mode() const { return _mode; }                ///< default: Override
-    Reference reference() const { return _reference; } ///< default: RestPose
 
     /// Override layers of a higher blend priority replace those of a lower one; layers of equal blend priority share
     /// the joints by their weights. The default is the layer's index: each layer replaces those before it.
     void setBlendPriority(int blendPriority);
-    int blendPriority() const { return _blendPriority; } ///< see setBlendPriority()
 
     /// Layers of equal blend priority that share their phase stay in step: play() and crossfade() start at the phase of
     /// the lowest of them, and all take the same time for a round at its speed, the mean of their rounds by layer
     /// weight. Default: false. Takes effect with the next play() or crossfade().
     void setPhaseShared(bool isShared);
-    bool isPhaseShared() const { return _isPhaseShared; } ///< see setPhaseShared()
-
-    /// True if clip, time, speed and state describe the layer completely: it plays or pauses one clip in a loop, or
-    /// nothing, it has no pose, and everything else has its default.
-    bool isPlainLoop() const;
-    /// The clips that contribute now and their shares.
-    const ClipMixer& mixer() const { return _mixer; }
 
 private:
     friend class AnimationController;
+    friend struct ControllerDetail;
+    friend struct LayerSnapshot;
 
-    AnimationLayer(LayerOwner& owner, std::size_t index)
-        : _owner(&owner), _index(index), _blendPriority(static_cast<int>(index))
+    /// The layers of one controller.
+    struct Stack
     {
-    }
-    AnimationLayer(LayerOwner& owner, const AnimationLayer& other);
-    AnimationLayer(const AnimationLayer&) = default;
-    AnimationLayer& operator=(const AnimationLayer&) = default;
+        std::shared_ptr<const AnimationSet> set;            ///< never null
+        std::vector<std::unique_ptr<AnimationLayer>> upper; ///< layers 1, 2 ...
+        AnimationLayer* base;
+
+        std::size_t count() const { return 1 + upper.size(); }
+        AnimationLayer& at(std::size_t index) const { return index == 0 ? *base : *upper[index - 1]; }
+    };
 
     /// A pose and its share of the layer.
     struct Posed
@@ -207,87 +174,42 @@ private:
         bool isShown() const { return share.value() > 0.0; }
     };
 
-    const AnimationSet& set() const { return *_owner->_set; }
+    AnimationLayer(const Stack& stack, std::size_t index) : _stack(&stack), _index(index)
+    {
+        _settings.blendPriority = static_cast<int>(index);
+    }
+    AnimationLayer(const Stack& stack, const AnimationLayer& other);
+    AnimationLayer(const AnimationLayer&) = default;
+    AnimationLayer& operator=(const AnimationLayer&) = default;
+
+    const AnimationSet& set() const { return *_stack->set; }
     double clipShare() const { return _posed ? 1.0 - _posed->share.value() : 1.0; }
+    std::uint32_t maskBits() const;
+    ClipPlayback playbackOf(std::size_t clip) const;
     void fadePose(double share, double seconds, FadeCurve curve);
-    double advancePose(double seconds);
+    std::optional<double> advancePose(double seconds);
     void collectPose(BlendList& out) const;
     void collectPoseMotion(RootMotionBlend& out, const RootMotionCurve& usual) const;
-    ClipPlayback playbackOf(std::size_t clip, LoopMode loopMode) const;
-    void begin(ClipPlayback playback, double seconds, const CrossfadeOptions& options);
+    Result<void> takeOptions(const std::string& target, double seconds, const CrossfadeOptions& options);
+    void begin(std::size_t clip, double seconds, const CrossfadeOptions& options);
+    std::optional<double> sharedPhase(int clip) const;
     void advance(double seconds);
     void collect(BlendList& out) const;
     void collectMotion(RootMotionBlend& out, const RootMotionCurve& usual) const;
     LayerStep lastStep() const;
     BlendSample sampleOf(const ClipPlayback& playback, double time, double share) const;
-    void rebuildInstruction();
 
-    LayerOwner* _owner;
-    std::size_t _index;
+    const Stack* _stack;
+    std::size_t _index; ///< below maxLayers
     ClipMixer _mixer;
     PlayState _state = PlayState::Stopped;
-    LoopMode _loopMode = LoopMode::Loop;
-    double _speed = 1.0;
+    Settings _settings;
     Fade _weight{1.0};
-    std::shared_ptr<const SetMask> _mask; ///< null: none
-    std::shared_ptr<Posed> _posed;        ///< of this layer alone; null: no pose
-    Mode _mode = Mode::Override;
-    Reference _reference = Reference::RestPose;
-    int _blendPriority = 0;
-    double _crossfadeMoment = -1.0; ///< see LayerStep
-    double _weightFadeMoment = -1.0;
-    glm::dvec2 _parameter{0.0};
-    bool _isPhaseShared = false;
-};
-
-/// The complete state of an AnimationLayer as plain numbers, also in the middle of a crossfade.
-///
-///     LayerSnapshot kept = controller.layer(1).snapshot();
-///     Result<void> restored = other.layer(1).restore(kept);
-struct LayerSnapshot
-{
-    using FadeState = Fade::State; ///< The state of a fade.
-    /// One clip that contributes, see ClipMixer::ActiveClip.
-    struct ActiveClip
-    {
-        int clip = -1;                      ///< index in the set, -1: none
-        double time = 0.0;                  ///< seconds on the time line of the clip
-        double speed = 1.0;                 ///< finite; negative: backwards
-        LoopMode loopMode = LoopMode::Loop; ///< behaviour at the ends
-        bool isReturning = false;           ///< see ClipPlayback::isReturning()
-        bool isFresh = true;                ///< see ClipPlayback::isFresh()
-        double share = 1.0;                 ///< of the layer, in [0, 1]
-        double shareBefore = 0.0;           ///< in [0, 1]
-        int phaseGroup = 0;                 ///< index of the first active clip that shares its phase
-        int space = -1;                     ///< index of its blend space in spaces, -1: none
-        std::size_t point = 0;              ///< index in the blend space
-        double weight = 1.0;                ///< in the blend space, in [0, 1]
-    };
-    /// A blend space that contributes, see ClipMixer::ActiveSpace.
-    struct ActiveSpace
-    {
-        std::shared_ptr<const BlendSpace> space; ///< immutable and shared; not null
-        glm::dvec2 parameter{0.0};               ///< finite
-        double phase = 0.0;                      ///< in [0, 1]
-        bool isReturning = false;                ///< see ClipPlayback::isReturning()
-        bool isFresh = true;                     ///< see ClipPlayback::isFresh()
-    };
-
-    PlayState state = PlayState::Stopped;                       ///< state of the layer
-    LoopMode loopMode = LoopMode::Loop;                         ///< loop mode of the layer
-    double speed = 1.0;                                         ///< finite; speed of the layer
-    std::vector<ActiveClip> activeClips;                        ///< oldest first; empty if nothing was ever played
-    std::vector<ActiveSpace> spaces;                            ///< the blend spaces of the active clips
-    FadeState crossfade;                                        ///< the share of the newest clip
-    FadeState weight;                                           ///< weight of the layer, in [0, 1]
-    std::vector<float> mask;                                    ///< one weight per track; empty: no mask
-    std::vector<JointPose::Track> pose;                         ///< what is set in the layer's pose
-    FadeState poseShare{0.0, 0.0};                              ///< see AnimationLayer::poseShare()
-    AnimationLayer::Mode mode = AnimationLayer::Mode::Override; ///< mode of the layer
-    AnimationLayer::Reference reference = AnimationLayer::Reference::RestPose; ///< used in mode Additive
-    int blendPriority = 0;      ///< see AnimationLayer::setBlendPriority()
-    glm::dvec2 parameter{0.0};  ///< see AnimationLayer::setParameter(), finite
-    bool isPhaseShared = false; ///< see AnimationLayer::setPhaseShared()
+    std::shared_ptr<const SetMask> _mask;   ///< null: none
+    std::shared_ptr<Posed> _posed;          ///< of this layer alone; null: no pose
+    std::optional<double> _crossfadeMoment; ///< see LayerStep
+    std::optional<double> _weightFadeMoment;
+    std::uint64_t _changeCount = 0; ///< changes of what collect() adds, but not by advance()
 };
 
 } // namespace osgGpuAnimation

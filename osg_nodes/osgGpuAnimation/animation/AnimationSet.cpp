@@ -3,7 +3,6 @@
 
 #include <osgGpuAnimation/animation/constraints/ConstraintChain.h>
 #include <osgGpuAnimation/animation/palette/PaletteBuilder.h>
-#include <osgGpuAnimation/animation/retarget/ClipRetargeter.h>
 
 #include <layout.glsl>
 
@@ -12,54 +11,9 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <unordered_map>
-#include <unordered_set>
 
 namespace osgGpuAnimation
 {
-
-std::shared_ptr<const SetMask> MaskTable::use(const std::vector<float>& weights)
-{
-    const std::lock_guard<std::mutex> lock(_mutex);
-    std::size_t place = _masks.size();
-    for (std::size_t m = _masks.size(); m-- > 0;)
-    {
-        const std::shared_ptr<const SetMask> mask = _masks[m].lock();
-        if (mask && mask->weights == weights) return mask;
-        if (!mask) place = m;
-    }
-    if (place >= maxMasks) return nullptr;
-    const auto made = std::make_shared<const SetMask>(SetMask{static_cast<std::uint32_t>(place + 1), weights});
-    _masks.resize(std::max(_masks.size(), place + 1));
-    _masks[place] = made;
-    return made;
-}
-
-void MaskTable::keep(const std::shared_ptr<const SetMask>& mask)
-{
-    const std::lock_guard<std::mutex> lock(_mutex);
-    if (std::find(_kept.begin(), _kept.end(), mask) == _kept.end()) _kept.push_back(mask);
-}
-
-std::size_t MaskTable::count() const
-{
-    const std::lock_guard<std::mutex> lock(_mutex);
-    return static_cast<std::size_t>(
-        std::count_if(_masks.begin(), _masks.end(), [](const auto& mask) { return !mask.expired(); }));
-}
-
-std::shared_ptr<const SetMask> MaskTable::find(std::uint32_t number) const
-{
-    if (number == 0) return nullptr;
-    const std::lock_guard<std::mutex> lock(_mutex);
-    return number <= _masks.size() ? _masks[number - 1].lock() : nullptr;
-}
-
-const float* MaskTable::weights(std::uint32_t number) const
-{
-    const std::shared_ptr<const SetMask> mask = find(number);
-    return mask ? mask->weights.data() : nullptr;
-}
 
 namespace
 {
@@ -114,13 +68,13 @@ std::optional<Error> findFault(const AnimationParts& parts, std::size_t trackCou
 /// larger records of compact clips from a file are refused by the limit of buffer textures.
 std::optional<Error> findFaultInSize(const std::vector<Clip>& clips)
 {
-    constexpr std::size_t most = (std::size_t(1) << 31) / 16;
+    constexpr std::size_t max = (std::size_t(1) << 31) / 16;
     std::size_t transforms = 0;
     for (const Clip& clip : clips)
         transforms += clip.data().size() + clip.trackCount() + clip.keyframeCount();
-    if (transforms <= most) return std::nullopt;
+    if (transforms <= max) return std::nullopt;
     return Error{"its clips take " + std::to_string(transforms) + " joint transforms, more than the " +
-                 std::to_string(most) + " that addresses on the GPU reach"};
+                 std::to_string(max) + " that addresses on the GPU reach"};
 }
 
 Result<std::vector<ConstraintChain>> chainsOf(const AnimationParts& parts)
@@ -190,105 +144,6 @@ Result<std::shared_ptr<const AnimationSet>> AnimationSet::withClips(std::vector<
     return make(std::move(parts), _masks);
 }
 
-namespace
-{
-
-/// Gives names that the clips of a set have a number.
-class FreeNames
-{
-public:
-    explicit FreeNames(const std::vector<Clip>& clips)
-    {
-        for (const Clip& clip : clips)
-            _taken.insert(clip.name());
-        _own = _taken;
-    }
-
-    std::string nameFor(const std::string& name)
-    {
-        std::string free = name;
-        for (std::size_t& number = _numbers[name]; _own.count(name) > 0 && _taken.count(free) > 0;)
-            free = name + " " + std::to_string(2 + number++);
-        _taken.insert(free);
-        return free;
-    }
-
-private:
-    std::unordered_set<std::string> _own;   ///< of the set
-    std::unordered_set<std::string> _taken; ///< and given
-    std::unordered_map<std::string, std::size_t> _numbers;
-};
-
-/// True if a clip has other weights than the defaults in this morph.
-bool isMorphMoved(const AnimationSet& set, std::size_t morph)
-{
-    const std::size_t first = set.firstTrackOfMorph(morph);
-    const std::size_t end = first + set.morphs()[morph].blockCount();
-    for (const Clip& clip : set.clips())
-        for (std::size_t k = 0; k < clip.keyframeCount(); ++k)
-            for (std::size_t track = first; track < end; ++track)
-                for (std::size_t number = 0; number < MorphWeights::weightsPerBlock; ++number)
-                    if (clip.at(k, track)->number(number) != set.restPose()[track].number(number)) return true;
-    return false;
-}
-
-/// By index of the other set: true if it is somebody's counterpart.
-std::vector<bool> usedOf(std::size_t count, const std::vector<int>& counterparts)
-{
-    std::vector<bool> isUsed(count, false);
-    for (const int counterpart : counterparts)
-        if (counterpart >= 0) isUsed[static_cast<std::size_t>(counterpart)] = true;
-    return isUsed;
-}
-
-/// The names of those without a counterpart.
-std::vector<std::string> atRest(const AnimationSet& set, const RigMatch& match)
-{
-    std::vector<std::string> names;
-    for (std::size_t joint = 0; joint < set.skeleton().jointCount(); ++joint)
-        if (match.jointCounterparts()[joint] < 0) names.push_back(set.skeleton().joint(joint).name);
-    for (std::size_t morph = 0; morph < set.morphs().size(); ++morph)
-        if (match.morphCounterparts()[morph] < 0 && !set.morphs()[morph].isProperty())
-            names.push_back(set.morphs()[morph].name);
-    return names;
-}
-
-/// The names of those that clips of the other set move and that are nobody's counterpart.
-std::vector<std::string> leftOut(const AnimationSet& other, const RigMatch& match)
-{
-    const std::vector<bool> isMoved = JointMoves::inAnyOf(match.fromRest(), other.skeleton(), other.clips());
-    const std::vector<bool> isUsed = usedOf(isMoved.size(), match.jointCounterparts());
-    const std::vector<bool> isMorphUsed = usedOf(other.morphs().size(), match.morphCounterparts());
-    std::vector<std::string> names;
-    for (std::size_t joint = 0; joint < isMoved.size(); ++joint)
-        if (isMoved[joint] && !isUsed[joint]) names.push_back(other.skeleton().joint(joint).name);
-    for (std::size_t morph = 0; morph < isMorphUsed.size(); ++morph)
-        if (!isMorphUsed[morph] && isMorphMoved(other, morph)) names.push_back(other.morphs()[morph].name);
-    return names;
-}
-
-} // namespace
-
-Result<RetargetedSet> AnimationSet::withClipsOf(const AnimationSet& other, const RetargetOptions& options) const
-{
-    if (other.clips().empty()) return Error{"the other set has no clips"};
-    const Result<ClipRetargeter> retargeter =
-        ClipRetargeter::create({other.skeleton(), other.morphs()}, {_parts.skeleton, _parts.morphs}, options);
-    if (!retargeter) return retargeter.error();
-    FreeNames names(_parts.clips);
-    std::vector<Clip> clips = _parts.clips;
-    for (const Clip& clip : other.clips())
-    {
-        Result<Clip> made = retargeter.value().retarget(clip);
-        if (!made) return made.error();
-        clips.push_back(made.value().withName(names.nameFor(clip.name())));
-    }
-    Result<std::shared_ptr<const AnimationSet>> set = withClips(std::move(clips));
-    if (!set) return set.error();
-    const RigMatch& match = retargeter.value().match();
-    return RetargetedSet{set.value(), atRest(*this, match), leftOut(other, match)};
-}
-
 Result<std::shared_ptr<const AnimationSet>> AnimationSet::withConstraints(std::vector<Constraint> constraints) const
 {
     AnimationParts parts = _parts;
@@ -355,7 +210,7 @@ Result<std::shared_ptr<const AnimationSet>> AnimationSet::make(AnimationParts pa
 int AnimationSet::entryOfRigidJoint(int joint) const
 {
     if (joint < 0 || static_cast<std::size_t>(joint) >= _layout.entryOfRigidJoint.size()) return -1;
-    return _layout.entryOfRigidJoint[static_cast<std::size_t>(joint)];
+    return _layout.entryOfRigidJoint[joint];
 }
 
 int AnimationSet::findClip(const std::string& name) const

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/Clip.h>
-#include <osgGpuAnimation/animation/Constraint.h>
+#include <osgGpuAnimation/animation/AnimationParts.h>
+#include <osgGpuAnimation/animation/MaskTable.h>
 #include <osgGpuAnimation/animation/PaletteEntry.h>
-#include <osgGpuAnimation/animation/Skeleton.h>
+#include <osgGpuAnimation/animation/PoseInstruction.h>
 #include <osgGpuAnimation/math/Result.h>
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -19,112 +18,10 @@
 namespace osgGpuAnimation
 {
 
-/// Two neighbouring keyframes and how to mix them: the 16 bytes that the GPU gets for one clip of one character.
-/// Additive layers take two samples: their reference, then the sample itself.
-struct BlendSample
-{
-    /// the first keyframe, see AnimationSet::firstKeyframe(); 0: the rest pose; POSE_SAMPLE_POSED: an index of
-    /// PoseInstruction::poses
-    std::uint32_t keyframe = 0;
-    float alpha = 0.0f;        ///< share of the second keyframe, in [0, 1)
-    float weight = 1.0f;       ///< in [0, 1]; negative values and NaN count as 0
-    std::uint32_t control = 0; ///< bits of layout.glsl: POSE_SAMPLE_SPLINE …, and the number of the mask << 16
-};
-
-static_assert(sizeof(BlendSample) == 16, "a blend sample is 16 bytes on the GPU");
-
-class JointPose;
-
-/// The blend samples of one character in one frame: the GPU mixes them to the character's pose. Default: the rest pose.
-///
-/// The mix, joint by joint (shaders/mix.glsl and its CPU twin Pose):
-/// - The weight of a sample at a joint is its own weight times the weight of its mask.
-/// - Samples are grouped into **blend priorities**, from the bottom up; POSE_SAMPLE_ABOVE begins the next blend
-///   priority. Samples of one blend priority share the joint by their weights: a sum above 1 is scaled to 1. If the
-///   weights sum to less than 1, the blend priorities below fill the remainder; the rest pose comes last.
-/// - Translations, scales and morph weights are summed. Rotations are summed as unit quaternions on one hemisphere and
-///   normalized: within a blend priority the hemisphere of its first sample with a weight at the joint; the sum of a
-///   blend priority takes the hemisphere of the blend priorities below. Controllers put the heaviest sample first, so
-///   the order of layers does not matter, no two samples cancel out, and a sample that fades in never reverses the
-///   visible one. (The hemisphere of the rest pose would be simpler, but two nearly equal poses half a turn away from
-///   rest would cancel out.)
-/// - Additive samples come last; their order does not matter. With d = R_reference⁻¹ · R, rotations are multiplied by
-///   exp(Σ weight · log d), with the sum limited to a full turn; translations get Σ weight · (T − T_reference); scales
-///   are multiplied by Π (1 + weight · (S / S_reference − 1)), except on axes with a reference of 0.
-/// - A posed sample (POSE_SAMPLE_POSED) has no weight at the parts of joints and the morph weights that are not set in
-///   its pose.
-struct PoseInstruction
-{
-    static constexpr std::size_t maxSamples = 16; ///< the maximum number of samples of one pose
-
-    std::size_t sampleCount = 1;                 ///< [1, maxSamples]
-    std::array<BlendSample, maxSamples> samples; ///< only the first sampleCount are used
-    /// The poses of the posed samples. They change with their layers; whoever keeps a pose for later takes its
-    /// JointPose::sharedKeyframe(). A null pose, or one with another number of tracks than the set, shows nothing.
-    std::vector<std::shared_ptr<const JointPose>> poses{};
-    /// One per constraint of the set, solved in this order after the mix; empty: none has an effect.
-    std::vector<ConstraintTarget> targets{};
-};
-
 struct ConstraintChain;
 struct Box;
 /// For each palette entry, the box of the vertices that it moves, in the mesh's space at bind time.
 using EntryBoxes = std::vector<Box>;
-
-/// The weights of a mask, see JointMask. It exists as long as somebody holds it: the layers with this mask, and frames
-/// until they are drawn.
-struct SetMask
-{
-    std::uint32_t number;       ///< from 1 on, see BlendSample::control; unique among the masks that exist
-    std::vector<float> weights; ///< one per track, in [0, 1]
-};
-
-/// The masks of one AnimationSet by number. Safe to use from several threads.
-class MaskTable
-{
-public:
-    static constexpr std::size_t maxMasks = 4096; ///< the maximum number of masks that exist at one time
-
-    /// The mask with these weights. Creates it if it is new. Null: maxMasks masks exist.
-    std::shared_ptr<const SetMask> use(const std::vector<float>& weights);
-    /// The table holds the mask as long as it exists itself. mask: of use().
-    void keep(const std::shared_ptr<const SetMask>& mask);
-
-    std::size_t count() const; ///< number of masks that exist
-    /// Null for 0 (no mask) and for numbers without a mask.
-    std::shared_ptr<const SetMask> find(std::uint32_t number) const;
-    /// The weights of a mask, one per track, valid while the mask exists. Null as for find().
-    const float* weights(std::uint32_t number) const;
-
-private:
-    mutable std::mutex _mutex;
-    std::vector<std::weak_ptr<const SetMask>> _masks; ///< by number - 1; expired: the number is free
-    std::vector<std::shared_ptr<const SetMask>> _kept;
-};
-
-/// The input of AnimationSet::create().
-struct AnimationParts
-{
-    Skeleton skeleton;                     ///< the joints
-    std::vector<Skin> skins;               ///< skins of the meshes
-    std::vector<int> rigidJoints;          ///< joints that carry a mesh without a skin
-    std::vector<MorphWeights> morphs;      ///< meshes with morph weights
-    std::vector<Clip> clips;               ///< created for the same skeleton and morphs
-    std::vector<Constraint> constraints{}; ///< in the order in which they are solved
-    std::vector<Skin> garments{};          ///< inverse binds of meshes from other files, see withGarments()
-};
-
-class AnimationSet;
-
-/// The result of AnimationSet::withClipsOf().
-struct RetargetedSet
-{
-    std::shared_ptr<const AnimationSet> set; ///< never null; its last clips are the new ones
-    /// Joints and morphs of the set that have no counterpart: the new clips leave them at rest.
-    std::vector<std::string> atRest;
-    /// Joints and morphs that the other set's clips move and that have no counterpart in the set.
-    std::vector<std::string> leftOut;
-};
 
 /// Skeleton, palette and clips of one kind of character. It is immutable; all instances of the character share it on
 /// the CPU and, once per graphics context, on the GPU. A **track** is one JointTransform in every keyframe: first the
@@ -147,25 +44,6 @@ public:
     /// A set with the same skeleton, skins, morphs and masks but other clips, for example with markers (see
     /// Clip::withMarkers). Its palette is the same, so the meshes of this set fit it. Errors: those of create().
     Result<std::shared_ptr<const AnimationSet>> withClips(std::vector<Clip> clips) const;
-
-    /// A set with the same skeleton, skins, morphs and masks, with the clips of this set and then those of another one:
-    ///
-    ///     auto result = knight->getAnimationSet().withClipsOf(*general);
-    ///     if (result) set = result.value().set; // for AnimatedCharacter::setAnimationSet()
-    ///
-    /// Joints and morphs are matched by name, see RetargetOptions. Where their rest poses agree, the clips are copied
-    /// bit by bit. Elsewhere rotations keep their difference from the rest pose in model space (derived at
-    /// ClipRetargeter), so both characters must face the same way at rest. The hips and the joints above them move by
-    /// the ratio of the hip heights, which is that of the legs; at each keyframe the hips are shifted along +Y, so that
-    /// the body's height above the ground is that of the clip times the ratio. Other translations are those of this
-    /// set's rest pose; factors of the rest scale are kept. What has no counterpart keeps its rest pose. Times, markers
-    /// and morph weights are copied. A name that this set's clips have gets a number: `Idle 2`. The new clips are
-    /// exact: compact ones may be compacted again (see compactClips()).
-    ///
-    /// Errors: the other set has no clips; neither a joint nor a morph has a counterpart; a name in the options does
-    /// not exist; root motion was removed from a clip (see withRootMotion()) whose joint has another rest pose; errors
-    /// of create().
-    Result<RetargetedSet> withClipsOf(const AnimationSet& other, const RetargetOptions& options = {}) const;
 
     /// A set with the same skeleton, skins, morphs, masks and clips but these constraints, solved in this order. Its
     /// palette is the same, so the meshes of this set fit it. Errors: a joint that does not exist; joints of a chain
@@ -212,7 +90,7 @@ public:
     /// The entry with an identity inverse bind for a joint that carries a rigid mesh; -1 for other joints.
     int entryOfRigidJoint(int joint) const;
     /// The joint's main entry; jointToModel = entry · (that entry's inverseBind)⁻¹.
-    int mainEntry(int joint) const { return _layout.mainEntry[static_cast<std::size_t>(joint)]; }
+    int mainEntry(int joint) const { return _layout.mainEntry[joint]; }
     /// The entry of a morph's first weight block; the others follow it. -1 without weights and for properties.
     int entryOfMorph(std::size_t morph) const { return _layout.entryOfMorph[morph]; }
 

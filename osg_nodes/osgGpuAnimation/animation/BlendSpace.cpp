@@ -23,12 +23,12 @@ namespace
 
 std::optional<std::string> findFaultInPlaces(const std::vector<BlendSpace::Point>& points)
 {
-    constexpr double farthest = 1e9;
+    constexpr double max = 1e9;
     double extent = 0.0;
     for (std::size_t i = 0; i < points.size(); ++i)
     {
         const glm::dvec2& place = points[i].place;
-        if (!(std::abs(place.x) <= farthest && std::abs(place.y) <= farthest))
+        if (!(std::abs(place.x) <= max && std::abs(place.y) <= max))
             return "position " + std::to_string(i) + " is (" + std::to_string(place.x) + ", " +
                    std::to_string(place.y) + "), which is not finite or beyond 1e9";
         extent = std::max(extent, glm::distance(place, points.front().place));
@@ -158,8 +158,8 @@ bool isLighter(const BlendSpace::Weight& a, const BlendSpace::Weight& b)
 
 BlendSpace::Mix BlendSpace::mixAt(const glm::dvec2& parameter) const
 {
-    static constexpr double farthest = 1e12; // squares stay finite
-    const auto number = [](double value) { return std::isnan(value) ? 0.0 : std::clamp(value, -farthest, farthest); };
+    static constexpr double max = 1e12; // squares stay finite
+    const auto number = [](double value) { return std::isnan(value) ? 0.0 : std::clamp(value, -max, max); };
     const glm::dvec2 wanted(number(parameter.x), number(parameter.y));
     const PlaneCell* nearestCell = &_cells.front();
     NearestInCell nearest = nearestIn(*nearestCell, _places, wanted);
@@ -254,8 +254,7 @@ double BlendSpace::wayOf(const AnimationSet& set, std::size_t first, std::size_t
 double BlendSpace::groundSpeedAt(const AnimationSet& set, const glm::dvec2& parameter) const
 {
     const Mix mix = mixAt(parameter);
-    const std::vector<Weight> weights(mix.weights.begin(),
-                                      mix.weights.begin() + static_cast<std::ptrdiff_t>(mix.count));
+    const std::vector<Weight> weights(mix.weights.begin(), mix.weights.begin() + mix.count);
     double way = 0.0; // quadratic, through the corners and the middles of the edges
     for (std::size_t i = 0; i < weights.size(); ++i)
     {

@@ -6,7 +6,6 @@
 #include <osgGpuAnimation/math/Result.h>
 
 #include <cstddef>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,33 +18,6 @@ struct ClipMarker
 {
     double time = 0.0; ///< seconds on the clip's time line, in [0, duration]
     std::string name;  ///< not necessarily unique
-};
-
-/// One property over time, as a file stores it (glTF 2.0, section 3.11): the input of ClipBuilder.
-struct Channel
-{
-    /// The property that a channel animates.
-    enum class Path
-    {
-        Translation, ///< 3 numbers per value
-        Rotation,    ///< 4 numbers per value: quaternion x, y, z, w
-        Scale,       ///< 3 numbers per value
-        Weights,     ///< one number per morph target, as many as MorphWeights::defaults, or one, see weight
-    };
-    /// The interpolation between two keys (glTF 2.0, appendix C).
-    enum class Interpolation
-    {
-        Step,        ///< keeps the value until the next key
-        Linear,      ///< linear; slerp for rotations
-        CubicSpline, ///< each key has three values: in-tangent, value, out-tangent
-    };
-
-    Path path = Path::Translation;                       ///< the animated property
-    Interpolation interpolation = Interpolation::Linear; ///< between two keys
-    int target = -1;            ///< a joint of the skeleton; for Weights, an index into the morph weights
-    std::vector<double> times;  ///< seconds, strictly ascending
-    std::vector<double> values; ///< all numbers of all keys, in the order of the keys
-    int weight = -1;            ///< for Weights: the only weight that the channel drives; -1: all
 };
 
 struct ClipParts;
@@ -143,17 +115,6 @@ private:
     std::vector<ClipMarker> _markers;
     std::shared_ptr<const RootMotionCurve> _rootMotion;
     std::shared_ptr<const CompactTracks> _compactTracks;
-};
-
-/// Options of AnimationSet::withClipsOf().
-struct RetargetOptions
-{
-    /// From joints of the set to their counterparts in the set of the clips, where their names differ; to an empty
-    /// name: the joint has none. All others are matched by name, without namespaces and the prefix `mixamorig`.
-    std::map<std::string, std::string> counterparts{};
-    /// The joint of the set that carries the body. Empty: a joint called hips or pelvis, else the first joint below
-    /// which the skeleton branches.
-    std::string hips{};
 };
 
 /// The input of Clip::create(): everything that a clip exports.

@@ -12,119 +12,16 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// value modulo period, in [0, period).
-double wrapped(double value, double period)
-{
-    const double rest = std::fmod(value, period);
-    if (rest >= 0.0) return rest;
-    // A tiny negative remainder would round up to the period itself.
-    return std::min(rest + period, std::nextafter(period, 0.0));
-}
-
 /// A share below this is invisible.
 constexpr double negligible = 1.0 / 4096.0;
 
 double finiteProduct(double a, double b)
 {
-    constexpr double largest = std::numeric_limits<double>::max();
-    return std::clamp(a * b, -largest, largest);
+    constexpr double max = std::numeric_limits<double>::max();
+    return std::clamp(a * b, -max, max);
 }
 
 } // namespace
-
-ClipPlayback::ClipPlayback(int clip, double duration, double speed, LoopMode loopMode)
-    : _clip(clip), _duration(duration), _time(speed < 0.0 ? duration : 0.0), _speed(speed), _loopMode(loopMode)
-{
-}
-
-double ClipPlayback::phase() const
-{
-    if (!(_duration > 0.0)) return 0.0;
-    if (_loopMode == LoopMode::PingPong)
-        return (_direction > 0.0 ? _time : 2.0 * _duration - _time) / (2.0 * _duration);
-    return shownTime() / _duration;
-}
-
-void ClipPlayback::setLoopMode(LoopMode mode)
-{
-    if (mode != _loopMode) _direction = 1.0;
-    _loopMode = mode;
-}
-
-void ClipPlayback::seek(double seconds)
-{
-    _time = std::clamp(seconds, 0.0, _duration);
-    _isFresh = true;
-}
-
-void ClipPlayback::restore(double time, bool isReturning, bool isFresh)
-{
-    seek(time);
-    _direction = isReturning && _loopMode == LoopMode::PingPong ? -1.0 : 1.0;
-    _isFresh = isFresh;
-}
-
-void ClipPlayback::setPhase(double phase)
-{
-    if (_loopMode != LoopMode::PingPong)
-    {
-        seek(phase * _duration);
-        return;
-    }
-    _direction = phase <= 0.5 ? 1.0 : -1.0;
-    seek(2.0 * _duration * (phase <= 0.5 ? phase : 1.0 - phase));
-}
-
-PlaybackStep ClipPlayback::move(double seconds)
-{
-    PlaybackStep move;
-    move.from = move.to = _time;
-    move.includesStart = _isFresh;
-    if (_loopMode == LoopMode::Once) return moveOnce(seconds);
-    if (seconds == 0.0) return move;
-    _isFresh = false;
-    move.distance = seconds;
-    move.isAscending = (seconds > 0.0) == (_loopMode == LoopMode::Loop || _direction > 0.0);
-    if (_duration <= 0.0)
-    {
-        _time = 0.0;
-        return move;
-    }
-    if (_loopMode == LoopMode::Loop)
-    {
-        const double unrolled = _time + seconds;
-        _time = wrapped(unrolled, _duration);
-        move.crossings = std::round((unrolled - _time) / _duration);
-    }
-    else
-    {
-        // A period plays the clip forwards in its first half and backwards in its second.
-        const double half = _direction > 0.0 ? 0.0 : 1.0;
-        const double unrolled = (_direction > 0.0 ? _time : 2.0 * _duration - _time) + seconds;
-        const double phase = wrapped(unrolled, 2.0 * _duration);
-        _direction = phase <= _duration ? 1.0 : -1.0;
-        _time = phase <= _duration ? phase : 2.0 * _duration - phase;
-        const double periods = std::round((unrolled - phase) / (2.0 * _duration));
-        move.crossings = 2.0 * periods + (phase <= _duration ? 0.0 : 1.0) - half;
-    }
-    move.to = _time;
-    return move;
-}
-
-PlaybackStep ClipPlayback::moveOnce(double seconds)
-{
-    PlaybackStep move;
-    move.from = _time;
-    move.includesStart = _isFresh;
-    const double time = _time + seconds;
-    move.hasFinished = _duration <= 0.0 || (seconds > 0.0 && time >= _duration) || (seconds < 0.0 && time <= 0.0);
-    _time = std::clamp(time, 0.0, _duration);
-    _isFresh = _isFresh && seconds == 0.0 && !move.hasFinished;
-    move.to = _time;
-    move.distance = seconds == 0.0 ? 0.0 : _time - move.from;
-    move.isAscending = seconds >= 0.0;
-    return move;
-}
 
 namespace
 {
@@ -138,6 +35,12 @@ PlaybackStep scaled(PlaybackStep step, double factor)
     return step;
 }
 
+/// The phase of a blend space at the time of one of its clips.
+double phaseIn(const BlendSpace::Point& point, const ClipPlayback& playback)
+{
+    return playback.loopMode() == LoopMode::Loop ? point.phaseAt(playback.time()) : playback.normalizedTime();
+}
+
 /// The step of a clip of a looping blend space. rounds: new rounds of the phase. seconds: of the blend space.
 PlaybackStep loopStep(const BlendSpace::Point& point, const ClipMixer::ActiveSpace& before, double phase, double rounds,
                       double seconds)
@@ -149,8 +52,8 @@ PlaybackStep loopStep(const BlendSpace::Point& point, const ClipMixer::ActiveSpa
     const double duration = point.duration();
     if (!(duration > 0.0)) return step;
     const double from = point.timeAt(before.phase), to = point.timeAt(phase);
-    step.from = wrapped(from, duration);
-    step.to = wrapped(to, duration);
+    step.from = ClipPlayback::wrapped(from, duration);
+    step.to = ClipPlayback::wrapped(to, duration);
     step.crossings = rounds + std::round((to - step.to) / duration) - std::round((from - step.from) / duration);
     if (before.isFresh && seconds < 0.0 && step.from == 0.0) // a new clip that plays backwards starts at its end
     {
@@ -185,8 +88,7 @@ void ClipMixer::restore(const std::vector<ActiveClip>& activeClips, const Fade& 
     _lastPhaseGroup = 0;
     _lastSpace = -1;
     if (activeClips.empty()) return;
-    const auto last =
-        activeClips.begin() + static_cast<std::ptrdiff_t>(std::min(activeClips.size(), maxActiveClips)) - 1;
+    const auto last = activeClips.begin() + std::min(activeClips.size(), maxActiveClips) - 1;
     _leaving.assign(activeClips.begin(), last);
     _current = *last;
     _spaces = std::move(spaces);
@@ -216,8 +118,7 @@ void ClipMixer::fadeTo(const ClipPlayback& playback, double seconds, FadeCurve c
 void ClipMixer::spread(std::shared_ptr<const BlendSpace> space, std::size_t point, const glm::dvec2& parameter)
 {
     ActiveSpace active;
-    active.phase = space->points()[point].phaseAt(_current.playback.time());
-    if (_current.playback.loopMode() != LoopMode::Loop) active.phase = _current.playback.normalizedTime();
+    active.phase = phaseIn(space->points()[point], _current.playback);
     active.isReturning = _current.playback.isReturning();
     active.space = std::move(space);
     active.number = _current.space = ++_lastSpace;
@@ -268,9 +169,7 @@ void ClipMixer::seek(double seconds)
     for (ActiveSpace& space : _spaces)
     {
         if (space.number != _current.space) continue;
-        const bool isLoop = _current.playback.loopMode() == LoopMode::Loop;
-        space.phase = isLoop ? space.space->points()[_current.point].phaseAt(_current.playback.time())
-                             : _current.playback.normalizedTime();
+        space.phase = phaseIn(space.space->points()[_current.point], _current.playback);
         space.isFresh = true;
         placeClips(space);
     }
@@ -291,9 +190,7 @@ void ClipMixer::setLoopMode(LoopMode mode)
     {
         if (space.number != _current.space || !isNew) continue;
         space.isReturning = false;
-        const bool isLoop = mode == LoopMode::Loop;
-        space.phase = isLoop ? space.space->points()[_current.point].phaseAt(_current.playback.time())
-                             : _current.playback.normalizedTime();
+        space.phase = phaseIn(space.space->points()[_current.point], _current.playback);
         placeClips(space);
     }
 }
@@ -308,7 +205,7 @@ const ClipMixer::ActiveSpace* ClipMixer::findSpace(int number) const
 void ClipMixer::remove(std::size_t index)
 {
     if (index == _leaving.size()) _current = _leaving[--index];
-    _leaving.erase(_leaving.begin() + static_cast<std::ptrdiff_t>(index));
+    _leaving.erase(_leaving.begin() + index);
 }
 
 void ClipMixer::removeFaded()
@@ -333,15 +230,15 @@ void ClipMixer::removeUnusedSpaces()
 /// Removes the one of the first active clips with the smallest share; the others of them take it over.
 void ClipMixer::dropLightest(std::size_t candidates)
 {
-    std::size_t least = 0;
+    std::size_t min = 0;
     double whole = 0.0;
     for (std::size_t i = 0; i < candidates; ++i)
     {
         whole += at(i).share;
-        if (at(i).share < at(least).share) least = i;
+        if (at(i).share < at(min).share) min = i;
     }
-    const double left = whole - at(least).share;
-    remove(least);
+    const double left = whole - at(min).share;
+    remove(min);
     for (std::size_t i = 0; i + 1 < candidates && left > 0.0; ++i)
     {
         at(i).share *= whole / left;
@@ -349,22 +246,19 @@ void ClipMixer::dropLightest(std::size_t candidates)
     }
 }
 
-double ClipMixer::advance(double seconds, bool isCurrentPlaying)
+std::optional<double> ClipMixer::advance(double seconds, bool isCurrentPlaying)
 {
     removeFaded();
-    const double moment = _fade.advance(seconds);
-    if (moment >= 0.0 || isFading())
+    const std::optional<double> moment = _fade.advance(seconds);
+    if (moment || isFading())
     {
-        for (ActiveClip& activeClip : _leaving)
+        for (std::size_t i = 0; i < activeClipCount(); ++i)
         {
-            const bool isComing = isCurrent(activeClip);
-            activeClip.share =
-                isComing ? activeClip.weight * _fade.value() : activeClip.shareBefore * (1.0 - _fade.value());
-            activeClip.meanShare =
-                isComing ? activeClip.weight * _fade.mean() : activeClip.shareBefore * (1.0 - _fade.mean());
+            ActiveClip& clip = at(i);
+            const bool isComing = isCurrent(clip);
+            clip.share = isComing ? clip.weight * _fade.value() : clip.shareBefore * (1.0 - _fade.value());
+            clip.meanShare = isComing ? clip.weight * _fade.mean() : clip.shareBefore * (1.0 - _fade.mean());
         }
-        _current.share = _current.weight * _fade.value();
-        _current.meanShare = _current.weight * _fade.mean();
     }
     else
         for (std::size_t i = 0; i < activeClipCount(); ++i)
@@ -467,7 +361,7 @@ public:
     {
         if (!(_seconds > 0.0)) return 0.0;
         const double unrolled = secondsAt(phase) + seconds;
-        double rest = wrapped(unrolled, _seconds);
+        double rest = ClipPlayback::wrapped(unrolled, _seconds);
         const double rounds = std::round((unrolled - rest) / _seconds);
         std::size_t stretch = 0;
         for (; stretch + 1 < _stretchCount && rest >= stretchSeconds(stretch); ++stretch)
@@ -547,7 +441,7 @@ void ClipMixer::placeClips(const ActiveSpace& space)
         const BlendSpace::Point& point = space.space->points()[activeClip.point];
         double time = point.duration() * space.phase;
         if (activeClip.playback.loopMode() == LoopMode::Loop && point.duration() > 0.0)
-            time = wrapped(point.timeAt(space.phase), point.duration());
+            time = ClipPlayback::wrapped(point.timeAt(space.phase), point.duration());
         activeClip.playback.restore(time, space.isReturning, space.isFresh);
     }
 }

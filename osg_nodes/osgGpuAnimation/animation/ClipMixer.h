@@ -2,8 +2,8 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/BlendSpace.h>
+#include <osgGpuAnimation/animation/ClipPlayback.h>
 #include <osgGpuAnimation/animation/Fade.h>
-#include <osgGpuAnimation/animation/Playback.h>
 
 #include <glm/vec2.hpp>
 
@@ -14,91 +14,6 @@
 
 namespace osgGpuAnimation
 {
-
-/// One step of a clip's time: where it began, where it ended, and how often it crossed the ends of the clip.
-struct PlaybackStep
-{
-    double from = 0.0,          ///< start, in seconds on the time line of the clip
-        to = 0.0;               ///< end, in seconds on the time line of the clip
-    double distance = 0.0;      ///< seconds of the clip that the step covers; negative: backwards
-    double crossings = 0.0;     ///< jumps (Loop) or turns (PingPong) at the ends, an integer; negative: backwards
-    bool isAscending = true;    ///< true if time increased at the beginning of the step
-    bool includesStart = false; ///< true if no earlier step has included `from`, so that its markers count
-    bool hasFinished = false;   ///< true if a Once clip reached its end
-};
-
-/// The time of one clip that plays. It is a plain value and cheap to copy; it knows only the duration of the clip.
-class ClipPlayback
-{
-public:
-    ClipPlayback() = default;
-    /// Starts at time 0, or at the end if the speed is negative. duration: seconds, at least 0. speed: finite. Neither
-    /// is checked.
-    ClipPlayback(int clip, double duration, double speed, LoopMode loopMode);
-
-    int clip() const { return _clip; }            ///< -1: none
-    double duration() const { return _duration; } ///< seconds
-    /// Seconds of one round: a round of PingPong plays the clip forwards and backwards and lasts twice the duration.
-    double roundSeconds() const { return _loopMode == LoopMode::PingPong ? 2.0 * _duration : _duration; }
-    double time() const { return _time; }           ///< seconds, in [0, duration]
-    double speed() const { return _speed; }         ///< 1: the speed of the file; negative: backwards
-    LoopMode loopMode() const { return _loopMode; } ///< the behaviour at the ends
-    /// Time divided by duration, in [0, 1].
-    double normalizedTime() const { return _duration > 0.0 ? _time / _duration : 0.0; }
-    /// Share of a round, in [0, 1).
-    double phase() const;
-    /// The time at which to sample the keyframes: at the end of a Loop, time 0.
-    double shownTime() const { return _loopMode == LoopMode::Loop && _time >= _duration ? 0.0 : _time; }
-    /// True if a Once clip cannot continue at this speed.
-    bool isAtEnd() const { return _time == (_speed < 0.0 ? 0.0 : _duration); }
-
-    bool isReturning() const { return _direction < 0.0; } ///< true on the second half of PingPong's round
-    bool isFresh() const { return _isFresh; }             ///< true if no step has started at this time
-
-    /// Restores stored values. time: clamped to [0, duration].
-    void restore(double time, bool isReturning, bool isFresh);
-    void setSpeed(double speed) { _speed = speed; } ///< speed: finite, not checked
-    void setLoopMode(LoopMode mode); ///< The time stays. A new mode resets the PingPong direction to forwards.
-    void seek(double seconds);       ///< clamped to [0, duration]
-    void setPhase(double phase);     ///< in [0, 1]
-    /// Moves the time. seconds: on the time line of the clip (elapsed seconds times speed); finite, any sign.
-    PlaybackStep move(double seconds);
-
-private:
-    PlaybackStep moveOnce(double seconds);
-
-    int _clip = -1;
-    double _duration = 0.0;
-    double _time = 0.0;
-    double _speed = 1.0;
-    double _direction = 1.0; ///< of PingPong: 1 or -1
-    LoopMode _loopMode = LoopMode::Loop;
-    bool _isFresh = true; ///< no step has started at this time
-};
-
-struct PoseExtent;
-
-/// A clip, or a pose of the application, that contributes to a character's pose.
-struct PlayedClip
-{
-    /// The contribution of a clip to the pose.
-    enum class Part
-    {
-        Mixed,           ///< in an Override layer
-        AddedToRest,     ///< its difference from the rest pose, see AnimationLayer::Reference
-        AddedToItsFirst, ///< its difference from its own first keyframe
-    };
-
-    int clip = -1;                                    ///< -1: the rest pose
-    Part part = Part::Mixed;                          ///< the contribution
-    std::shared_ptr<const PoseExtent> pose = nullptr; ///< of a JointPose in place of the clip; null: the clip
-
-    /// True if clip and part are equal, and the extent is the same.
-    bool operator==(const PlayedClip& other) const
-    {
-        return clip == other.clip && part == other.part && pose == other.pose;
-    }
-};
 
 /// The clips that one layer plays at a time: the current clip and, during crossfades, the clips that fade out and play
 /// on. A crossfade may begin at any time: the whole visible mix fades out while the new clip fades in, so the pose
@@ -131,11 +46,11 @@ public:
     struct ActiveSpace
     {
         std::shared_ptr<const BlendSpace> space; ///< never null
-        int number = 0;                          ///< see ActiveClip::space
         glm::dvec2 parameter{0.0};               ///< see BlendSpace::mixAt()
         double phase = 0.0;                      ///< see BlendSpace::Point::timeAt(), in [0, 1]
         bool isReturning = false;                ///< see ClipPlayback::isReturning()
         bool isFresh = true;                     ///< see ClipPlayback::isFresh()
+        int number = 0;                          ///< see ActiveClip::space
     };
 
     std::size_t activeClipCount() const { return isEmpty() ? 0 : _leaving.size() + 1; } ///< in [0, maxActiveClips]
@@ -148,7 +63,7 @@ public:
     const ClipPlayback& current() const { return _current.playback; }
     /// The newest active clip is of this blend space; null: of none.
     const ActiveSpace* currentSpace() const { return _spaces.empty() ? nullptr : findSpace(_current.space); }
-    bool isFading() const { return !_fade.isFinished(); } ///< true during a crossfade
+    bool isFading() const { return !isEmpty() && !_fade.isFinished(); } ///< true during a crossfade
 
     const Fade& fade() const { return _fade; } ///< share of the current active clip, from 0 to 1
 
@@ -172,8 +87,8 @@ public:
     const std::vector<ActiveSpace>& spaces() const { return _spaces; } ///< of all active clips
 
     /// Moves the fade and all active clips; the current active clip moves only if isCurrentPlaying. Returns the share
-    /// of the step after which the fade ended, in [0, 1]; -1 if it did not end.
-    double advance(double seconds, bool isCurrentPlaying);
+    /// of the step after which the fade ended, in [0, 1]; none if it did not end.
+    std::optional<double> advance(double seconds, bool isCurrentPlaying);
     /// Sets the pace of the current phase group for advance(). Empty (the default): that of its clips.
     void setRoundsPerSecond(std::optional<double> roundsPerSecond) { _roundsPerSecond = roundsPerSecond; }
     /// Seconds of a round of the current phase group: the mean of its clips by share. 0: without a duration.

@@ -31,10 +31,10 @@ Fade::Fade(const State& state)
     advance(state.elapsed);
 }
 
-double Fade::advance(double seconds)
+std::optional<double> Fade::advance(double seconds)
 {
     _mean = _value;
-    if (isFinished() || !(seconds > 0.0)) return -1.0;
+    if (isFinished() || !(seconds > 0.0)) return std::nullopt;
     const auto& [from, to, duration, elapsed, curve] = _state;
     const double missing = duration - elapsed;
     const double before = elapsed / duration;
@@ -49,7 +49,7 @@ double Fade::advance(double seconds)
     const double now = elapsed / duration;
     _value = from + (to - from) * progress(curve, now);
     _mean = from + (to - from) * meanProgress(curve, before, now);
-    return -1.0;
+    return std::nullopt;
 }
 
 } // namespace osgGpuAnimation

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
+
 namespace osgGpuAnimation
 {
 
@@ -33,8 +35,8 @@ public:
     const State& state() const { return _state; }                        ///< to store the fade
     bool isFinished() const { return _state.elapsed >= _state.seconds; } ///< true if the target is reached
     /// Advances the time of the fade; seconds below 0 and NaN count as 0. Returns the share of the seconds after which
-    /// the fade finished, in [0, 1]; -1 if it did not finish in this step.
-    double advance(double seconds);
+    /// the fade finished, in [0, 1]; none if it did not finish in this step.
+    std::optional<double> advance(double seconds);
 
 private:
     State _state;

@@ -30,18 +30,18 @@ Result<JointMask> JointMask::subtree(const AnimationSet& set, const std::string&
     const int root = static_cast<int>(found.value());
     JointMask mask(set);
     const float step = 1.0f / (static_cast<float>(std::max(feather, 0)) + 1.0f);
-    const int rootDepth = skeleton.depths()[static_cast<std::size_t>(root)];
+    const int rootDepth = skeleton.depths()[root];
     std::vector<bool> isInside(skeleton.jointCount(), false);
     for (auto j = static_cast<std::size_t>(root); j < isInside.size(); ++j)
     {
         const int parent = skeleton.joint(j).parent;
-        isInside[j] = static_cast<int>(j) == root || (parent >= 0 && isInside[static_cast<std::size_t>(parent)]);
+        isInside[j] = static_cast<int>(j) == root || (parent >= 0 && isInside[parent]);
         if (isInside[j]) mask.setJoint(j, step * static_cast<float>(skeleton.depths()[j] - rootDepth + 1));
     }
     for (std::size_t morph = 0; morph < set.morphs().size(); ++morph)
     {
         const int owner = skeleton.jointOfSourceNode(set.morphs()[morph].sourceNode);
-        if (owner >= 0) mask.setMorph(morph, mask.joint(static_cast<std::size_t>(owner)));
+        if (owner >= 0) mask.setMorph(morph, mask.joint(owner));
     }
     return mask;
 }
@@ -68,8 +68,8 @@ bool JointMask::setJoint(std::size_t joint, float weight)
 bool JointMask::setMorph(std::size_t morph, float weight)
 {
     if (morph + 1 >= _firstTracks.size()) return false;
-    std::fill(_weights.begin() + static_cast<std::ptrdiff_t>(_firstTracks[morph]),
-              _weights.begin() + static_cast<std::ptrdiff_t>(_firstTracks[morph + 1]), clampedWeight(weight));
+    std::fill(_weights.begin() + _firstTracks[morph], _weights.begin() + (_firstTracks[morph + 1]),
+              clampedWeight(weight));
     return true;
 }
 

@@ -41,8 +41,8 @@ RootMotion RootMotion::inverse() const
 
 RootMotion RootMotion::power(double times) const
 {
-    constexpr double most = 1099511627776.0;
-    auto left = static_cast<std::uint64_t>(std::min(std::abs(times), most));
+    constexpr double max = 1099511627776.0;
+    auto left = static_cast<std::uint64_t>(std::min(std::abs(times), max));
     RootMotion square = times < 0.0 ? inverse() : *this;
     RootMotion result;
     result.up = up;

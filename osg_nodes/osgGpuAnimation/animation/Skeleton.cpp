@@ -42,12 +42,12 @@ std::vector<int> findDepths(const std::vector<Joint>& joints)
     {
         chain.clear();
         int above = static_cast<int>(i);
-        for (; above >= 0 && depths[static_cast<std::size_t>(above)] < 0; above = joints[chain.back()].parent)
+        for (; above >= 0 && depths[above] < 0; above = joints[chain.back()].parent)
         {
             if (chain.size() == joints.size()) return depths;
             chain.push_back(static_cast<std::size_t>(above));
         }
-        int depth = above < 0 ? -1 : depths[static_cast<std::size_t>(above)];
+        int depth = above < 0 ? -1 : depths[above];
         for (; !chain.empty(); chain.pop_back())
             depths[chain.back()] = ++depth;
     }
@@ -83,7 +83,7 @@ Result<Skeleton> Skeleton::create(std::vector<Joint> joints)
     {
         Joint& joint = joints[order[i]];
         // A parent is at an earlier level, so its new index is known.
-        if (joint.parent >= 0) joint.parent = skeleton._jointOfInput[static_cast<std::size_t>(joint.parent)];
+        if (joint.parent >= 0) joint.parent = skeleton._jointOfInput[joint.parent];
         joint.rest = cleaned(joint.rest);
         skeleton._depths.push_back(depths[order[i]]);
         if (joint.sourceNode >= 0) skeleton._jointOfSourceNode.emplace(joint.sourceNode, static_cast<int>(i));

@@ -21,8 +21,8 @@ constexpr JointTransform zeroTransform{glm::vec4(0.0f), glm::vec4(0.0f), glm::ve
 
 float rounded(double value)
 {
-    constexpr double largest = std::numeric_limits<float>::max();
-    return static_cast<float>(std::clamp(value, -largest, largest));
+    constexpr double max = std::numeric_limits<float>::max();
+    return static_cast<float>(std::clamp(value, -max, max));
 }
 
 /// The index of a path's first number among the twelve numbers of a track.
@@ -94,14 +94,14 @@ std::vector<Moment> findMoments(const std::vector<ChannelCurve>& curves)
     std::vector<double> times;
     std::vector<double> jumps;
     const std::vector<double> none;
-    const std::vector<double>* most = &none;
+    const std::vector<double>* max = &none;
     for (const ChannelCurve& curve : curves)
     {
         // Most channels share the times of an earlier channel, and sorting is slow.
         const std::vector<double>& own = curve.channel().times;
-        if (!std::includes(most->begin(), most->end(), own.begin(), own.end()))
+        if (!std::includes(max->begin(), max->end(), own.begin(), own.end()))
             times.insert(times.end(), own.begin(), own.end());
-        if (own.size() > most->size()) most = &own;
+        if (own.size() > max->size()) max = &own;
         curve.appendJumps(jumps);
     }
     sortUnique(times);
@@ -206,8 +206,7 @@ ClipBuilder::ClipBuilder(const Skeleton& skeleton, const std::vector<MorphWeight
 
 std::size_t ClipBuilder::componentCount(const Channel& channel) const
 {
-    if (channel.path == Path::Weights)
-        return channel.weight >= 0 ? 1 : _weightCounts[static_cast<std::size_t>(channel.target)];
+    if (channel.path == Path::Weights) return channel.weight >= 0 ? 1 : _weightCounts[channel.target];
     return channel.path == Path::Rotation ? 4 : 3;
 }
 
@@ -235,12 +234,12 @@ Result<void> ClipBuilder::add(Channel channel)
         return Error{subject() + "there are " + std::to_string(targets)};
     if (componentCount(channel) == 0) return Error{subject() + "it has no weights"};
     if (channel.path == Path::Weights && channel.weight >= 0 &&
-        static_cast<std::size_t>(channel.weight) >= _weightCounts[static_cast<std::size_t>(channel.target)])
+        static_cast<std::size_t>(channel.weight) >= _weightCounts[channel.target])
         return Error{subject() + "there is no weight " + std::to_string(channel.weight) + " among " +
-                     std::to_string(_weightCounts[static_cast<std::size_t>(channel.target)])};
+                     std::to_string(_weightCounts[channel.target])};
     const auto [firstKey, endKey] = keysOf(channel);
-    const auto first = _driven.begin() + static_cast<std::ptrdiff_t>(firstKey);
-    const auto end = _driven.begin() + static_cast<std::ptrdiff_t>(endKey);
+    const auto first = _driven.begin() + firstKey;
+    const auto end = _driven.begin() + endKey;
     if (std::find(first, end, true) != end) return Error{subject() + "another channel has this target already"};
     if (auto fault = findFaultInTimes(channel.times)) return Error{subject() + *fault};
     if (auto fault = findFaultInValues(channel, componentCount(channel))) return Error{subject() + *fault};
@@ -269,8 +268,8 @@ std::size_t ClipBuilder::byteSize() const
     const double bytesPerKeyframe =
         static_cast<double>(sizeof(float) + _rest.size() * Clip::transformsPerTrack(form()) * sizeof(JointTransform));
     const double bytes = bytesPerKeyframe * static_cast<double>(findMoments(curves()).size());
-    constexpr auto most = std::numeric_limits<std::size_t>::max();
-    return bytes < static_cast<double>(most) ? static_cast<std::size_t>(bytes) : most;
+    constexpr auto max = std::numeric_limits<std::size_t>::max();
+    return bytes < static_cast<double>(max) ? static_cast<std::size_t>(bytes) : max;
 }
 
 Clip ClipBuilder::build(std::string name)

@@ -31,9 +31,9 @@ glm::vec4 toFloats(const glm::dquat& q)
     return glm::vec4(Rotation::numbers(q));
 }
 
-bool isNear(const glm::vec4& a, const glm::vec4& b, double most)
+bool isNear(const glm::vec4& a, const glm::vec4& b, double max)
 {
-    return glm::all(glm::lessThanEqual(glm::dvec4(glm::abs(a - b)), glm::dvec4(most)));
+    return glm::all(glm::lessThanEqual(glm::dvec4(glm::abs(a - b)), glm::dvec4(max)));
 }
 
 bool isNear(const JointTransform& a, const JointTransform& b)
@@ -98,7 +98,7 @@ Result<void> RootMotionExtractor::findParent(const Clip& clip)
 {
     _parentToModel = glm::dmat4(1.0);
     _parentRotation = glm::identity<glm::dquat>();
-    for (int j = _skeleton.joint(_joint).parent; j >= 0; j = _skeleton.joint(static_cast<std::size_t>(j)).parent)
+    for (int j = _skeleton.joint(_joint).parent; j >= 0; j = _skeleton.joint(j).parent)
     {
         const auto joint = static_cast<std::size_t>(j);
         if (!isStill(clip, joint))

@@ -46,7 +46,7 @@ double limited(double value, double otherwise)
 
 } // namespace
 
-double largestComponent(const glm::dvec3& v)
+double maxComponent(const glm::dvec3& v)
 {
     return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
@@ -83,15 +83,15 @@ Aabb3d Aabb3d::grownWithin(double margin, double radius) const
 
 double Aabb3d::slackAround(const Aabb3d& inner) const
 {
-    const glm::dvec3 least = glm::min(inner.min - min, max - inner.max);
-    return std::min({least.x, least.y, least.z});
+    const glm::dvec3 slack = glm::min(inner.min - min, max - inner.max);
+    return std::min({slack.x, slack.y, slack.z});
 }
 
 Box Aabb3d::toBox() const
 {
     if (empty()) return Box();
     constexpr double rounding = 1e-5;
-    const double margin = rounding * largestComponent(glm::max(glm::abs(min), glm::abs(max)));
+    const double margin = rounding * maxComponent(glm::max(glm::abs(min), glm::abs(max)));
     return {glm::vec3(min - margin), glm::vec3(max + margin)};
 }
 

@@ -23,7 +23,7 @@ struct Box
 };
 
 /// The largest absolute component.
-double largestComponent(const glm::dvec3& v);
+double maxComponent(const glm::dvec3& v);
 
 /// An axis-aligned box in double precision that contains only finite numbers. Coordinates are clamped to
 /// [-limit, limit], so that a renderer can square the size of the box in single precision. Default: empty (min > max).

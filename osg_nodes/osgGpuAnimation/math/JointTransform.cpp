@@ -14,7 +14,7 @@ AffineMatrix JointTransform::toMatrix() const
     const glm::dvec4 size(scale);
     AffineMatrix matrix;
     for (int row = 0; row < 3; ++row)
-        matrix.rows[static_cast<std::size_t>(row)] =
+        matrix.rows[row] =
             limited({turn[0][row] * size.x, turn[1][row] * size.y, turn[2][row] * size.z, translation[row]});
     return matrix;
 }

@@ -19,11 +19,11 @@ namespace osgGpuAnimation
 template <typename T, typename NameOf>
 std::string quotedNames(const std::vector<T>& named, NameOf nameOf)
 {
-    constexpr std::size_t most = 50;
+    constexpr std::size_t max = 50;
     std::string names;
-    for (std::size_t i = 0; i < std::min(named.size(), most); ++i)
+    for (std::size_t i = 0; i < std::min(named.size(), max); ++i)
         names += (i == 0 ? "\"" : ", \"") + nameOf(named[i]) + "\"";
-    if (named.size() > most) names += ", … (" + std::to_string(named.size()) + " in all)";
+    if (named.size() > max) names += ", … (" + std::to_string(named.size()) + " in all)";
     return names.empty() ? "none" : names;
 }
 

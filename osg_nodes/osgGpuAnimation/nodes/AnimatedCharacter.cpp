@@ -3,6 +3,7 @@
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 
 #include <osgGpuAnimation/animation/bounds/MixBounds.h>
+#include <osgGpuAnimation/animation/detail/ControllerDetail.h>
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/frame/characters/FirstDraw.h>
 #include <osgGpuAnimation/frame/stage/LodSelection.h>
@@ -201,7 +202,8 @@ osg::Matrixd AnimatedCharacter::takeRootMotion()
 void AnimatedCharacter::update(double simulationTime)
 {
     PendingEvents events;
-    if (_updateTime && simulationTime != *_updateTime) _controller->advance(simulationTime - *_updateTime, events);
+    if (_updateTime && simulationTime != *_updateTime)
+        ControllerDetail::advance(*_controller, simulationTime - *_updateTime, events);
     _updateTime = simulationTime;
     updateBounds();
     _meshes.showProperties();
@@ -219,7 +221,7 @@ void AnimatedCharacter::update(double simulationTime)
 
 void AnimatedCharacter::updateBounds()
 {
-    findPlayedClips(*_controller, _playedNow);
+    ControllerDetail::findPlayedClips(*_controller, _playedNow);
     const std::uint64_t constraints = constraintsOf(*_controller);
     if (_playedNow == _played && constraints == _constraints) return;
     std::swap(_played, _playedNow);
@@ -328,7 +330,7 @@ osg::BoundingBox AnimatedCharacter::boundsOf(const std::vector<PlayedClip>& play
 osg::BoundingBox AnimatedCharacter::getCurrentBounds() const
 {
     std::vector<PlayedClip> played;
-    findPlayedClips(*_controller, played);
+    ControllerDetail::findPlayedClips(*_controller, played);
     return boundsOf(played);
 }
 

@@ -14,6 +14,7 @@
 #include <iostream>
 #include <mutex>
 #include <utility>
+#include <vector>
 
 namespace osgGpuAnimation
 {
@@ -41,7 +42,8 @@ void forEachLayer(AnimationController& controller, Function function)
 bool isAnyPlaying(AnimationController& controller)
 {
     bool isPlaying = false;
-    forEachLayer(controller, [&](AnimationLayer& layer) { isPlaying = isPlaying || layer.isPlaying(); });
+    forEachLayer(controller,
+                 [&](AnimationLayer& layer) { isPlaying = isPlaying || layer.state() == PlayState::Playing; });
     return isPlaying;
 }
 
@@ -54,16 +56,16 @@ void setPaused(AnimationController& controller, bool isPaused)
 void step(AnimationController& controller, double seconds)
 {
     setPaused(controller, false);
-    std::array<bool, maxLayers> hasEnded{};
-    forEachLayer(controller,
-                 [&](AnimationLayer& layer) { hasEnded[layer.index()] = layer.state() == PlayState::Ended; });
-    controller.advance(seconds);
-    // An ended layer does not advance, but it can step backward.
+    std::vector<AnimationLayer*> ended;
     forEachLayer(controller,
                  [&](AnimationLayer& layer)
                  {
-                     if (hasEnded[layer.index()] && seconds < 0.0) layer.seek(layer.time() + seconds * layer.speed());
+                     if (layer.state() == PlayState::Ended) ended.push_back(&layer);
                  });
+    controller.advance(seconds);
+    // An ended layer does not advance, but it can step backward.
+    for (AnimationLayer* layer : ended)
+        if (seconds < 0.0) layer->seek(layer->playback().time() + seconds * layer->settings().speed);
     setPaused(controller, true);
     OSG_NOTICE << "at " << controller.time() << " s of " << controller.duration() << std::endl;
 }
@@ -73,12 +75,12 @@ void multiplySpeed(AnimationController& controller, double factor)
     forEachLayer(controller,
                  [&](AnimationLayer& layer)
                  {
-                     const double speed = std::clamp(std::abs(layer.speed() * factor), slowest, fastest);
-                     layer.setSpeed(std::copysign(speed, layer.speed() * factor));
+                     const double wanted = layer.settings().speed * factor;
+                     layer.setSpeed(std::copysign(std::clamp(std::abs(wanted), slowest, fastest), wanted));
                      // An ended layer resumes after a change of direction.
-                     if (factor < 0.0 && layer.state() == PlayState::Ended) layer.seek(layer.time());
+                     if (factor < 0.0 && layer.state() == PlayState::Ended) layer.seek(layer.playback().time());
                  });
-    OSG_NOTICE << "speed " << controller.speed() << std::endl;
+    OSG_NOTICE << "speed " << controller.layer(0).settings().speed << std::endl;
 }
 
 void printKeysOnce()

@@ -289,12 +289,13 @@ private:
         const std::size_t count = std::min(controller.layerCount(), _before->layerCount());
         for (std::size_t i = 0; i < count; ++i)
         {
-            const AnimationLayer& before = std::as_const(*_before).layer(i);
-            const AnimationLayer& now = controller.layer(i);
+            const ClipPlayback& before = std::as_const(*_before).layer(i).playback();
+            const ClipPlayback& now = controller.layer(i).playback();
             if (before.clip() != now.clip()) continue;
             double apart = std::abs(before.time() - now.time());
             // Rounding may put one of them before the end of the loop and the other after it.
-            if (now.loopMode() == LoopMode::Loop) apart = std::min(apart, std::abs(now.duration() - apart));
+            if (controller.layer(i).settings().loopMode == LoopMode::Loop)
+                apart = std::min(apart, std::abs(now.duration() - apart));
             if (apart > SpringBones::seekSeconds) return true;
         }
         return false;

@@ -9,8 +9,9 @@
 #include "gltf/scene/NodeTree.h"
 
 #include <osgGpuAnimation/animation/bounds/TransformBound.h>
-#include <osgGpuAnimation/animation/retarget/ClipRetargeter.h>
-#include <osgGpuAnimation/animation/retarget/JointNames.h>
+#include <osgGpuAnimation/authoring/retarget/ClipRetargeter.h>
+#include <osgGpuAnimation/authoring/retarget/JointNames.h>
+#include <osgGpuAnimation/authoring/WithClipsOf.h>
 #include <osgGpuAnimation/nodes/properties/PropertyPointer.h>
 
 #include <osgDB/FileNameUtils>
@@ -282,7 +283,7 @@ std::vector<bool> nodesMovedBy(const std::vector<ClipFile>& files, const ClipJoi
     for (const ClipFile& file : files)
     {
         const Skeleton& skeleton = file.set->skeleton();
-        const std::vector<bool> isMoved = JointMoves::inAnyOf(RestPlaces(skeleton), skeleton, file.set->clips());
+        const std::vector<bool> isMoved = JointMoves::inAnyOf(skeleton, file.set->clips());
         for (std::size_t joint = 0; joint < isMoved.size(); ++joint)
             if (isMoved[joint]) moved.insert(bareJointName(skeleton.joint(joint).name));
     }
@@ -308,7 +309,7 @@ Result<std::shared_ptr<const AnimationSet>> withClipsOf(const std::shared_ptr<co
     if (!budget.take(bytes))
         return refuse("its clips would take " + std::to_string(bytes) + " bytes, " + budget.limitText());
     const Result<RetargetedSet> result =
-        set->withClipsOf(*file.set, retargetOptions(joints, set->skeleton(), file.set->skeleton()));
+        osgGpuAnimation::withClipsOf(*set, *file.set, retargetOptions(joints, set->skeleton(), file.set->skeleton()));
     if (!result) return refuse(result.error().message);
 
     const std::vector<std::string> atRest = namesInSkins(*set, result.value().atRest);
@@ -323,7 +324,7 @@ Result<std::shared_ptr<const AnimationSet>> withClipsOf(const std::shared_ptr<co
         if (fits(set->skeleton(), made))
             clips.push_back(made);
         else
-            report.warn(file.name + ": clip " + quoted(made.name()) + " takes joints or weights " + beyondFarthest() +
+            report.warn(file.name + ": clip " + quoted(made.name()) + " takes joints or weights " + outOfRangeText() +
                         "; clip skipped");
     }
     if (clips.size() == result.value().set->clips().size()) return result.value().set;

@@ -59,10 +59,10 @@ std::vector<ClipFile> readClipFiles(const std::string& modelFile, const ImportOp
 std::vector<bool> nodesMovedBy(const std::vector<ClipFile>& files, const ClipJoints& joints,
                                const tinygltf::Model& model);
 
-/// The set with the clips of the file after its own, at least one, see AnimationSet::withClipsOf(). Errors, which begin
-/// with the name of the file: those of that function; the clips exceed the budget; none can be played.
-/// Warnings: a clip that takes a joint too far is left out; the joints without a counterpart, those of the set only if
-/// skins name them. A given counterpart that the file does not have is ignored.
+/// The set with the clips of the file after its own, at least one, see osgGpuAnimation::withClipsOf(). Errors, which
+/// begin with the name of the file: those of that function; the clips exceed the budget; none can be played. Warnings:
+/// a clip that takes a joint too far is left out; the joints without a counterpart, those of the set only if skins name
+/// them. A given counterpart that the file does not have is ignored.
 Result<std::shared_ptr<const AnimationSet>> withClipsOf(const std::shared_ptr<const AnimationSet>& set,
                                                         const ClipFile& file, const ClipJoints& joints,
                                                         MemoryBudget& budget, Report& report);

@@ -161,7 +161,7 @@ std::optional<Clip> ClipReader::read(std::size_t index)
     Clip clip = _builder.build(animation.name.empty() ? "clip " + std::to_string(index) : animation.name);
     if (!fits(_joints.skeleton, clip))
     {
-        fail("it takes joints or weights " + beyondFarthest());
+        fail("it takes joints or weights " + outOfRangeText());
         return std::nullopt;
     }
     Result<Clip> marked = clip.withMarkers(readMarkers(animation.extras, _clip, _report));

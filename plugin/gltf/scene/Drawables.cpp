@@ -115,9 +115,9 @@ osg::ref_ptr<osg::Geometry> Drawables::make(const DrawablePlace& place)
 {
     const MeshPrimitive* mesh = meshPrimitive(place);
     if (!mesh) return nullptr;
-    if (!(farthestOf(place, *mesh) <= TransformBound::farthest))
+    if (!(farthestOf(place, *mesh) <= TransformBound::maxNumber))
     {
-        _report.warn(mesh->label + ": its vertices lie " + beyondFarthest() + "; not drawn");
+        _report.warn(mesh->label + ": its vertices lie " + outOfRangeText() + "; not drawn");
         return nullptr;
     }
     const tinygltf::Mesh& sourceMesh = _model.meshes[static_cast<std::size_t>(place.mesh)];

@@ -199,7 +199,7 @@ Result<Joints> buildJoints(const tinygltf::Model& model, const NodeTree& tree, c
         {
             const auto node = static_cast<std::size_t>(std::max(skeleton.value().joint(joint).sourceNode, 0));
             return Error{namedElement("nodes", node, model.nodes[node].name) +
-                         ": its transform and those above take it " + beyondFarthest()};
+                         ": its transform and those above take it " + outOfRangeText()};
         }
     Joints result{std::move(skeleton).value(), std::move(inputOfNode), std::move(moves), std::move(isSheared)};
     for (int& joint : result.ofNode)

@@ -82,7 +82,7 @@ double determinant(const osg::Matrixd& m)
 /// True if points at that distance from the origin can be drawn.
 bool reaches(const TransformBound& reach, double radius)
 {
-    return reach.fits() && reach.of(radius) <= TransformBound::farthest;
+    return reach.fits() && reach.of(radius) <= TransformBound::maxNumber;
 }
 
 void setWinding(osg::Node& node, bool mirrored)
@@ -128,7 +128,7 @@ void SceneGraphBuilder::addMesh(std::size_t node)
         if (isStill && !reaches(TransformBound::of(_parts.tree.toWorld[node]), mesh.radius))
         {
             _parts.report.warn(namedElement("nodes", node, source.name) + ": it takes vertices of " + mesh.label + ' ' +
-                               beyondFarthest() + "; not drawn");
+                               outOfRangeText() + "; not drawn");
             continue;
         }
         ImportedPrimitive imported;
@@ -220,7 +220,7 @@ void SceneGraphBuilder::addStill(std::size_t node)
             if (!reaches(reach * TransformBound::of(glm::make_mat4(instance.ptr())), radius))
             {
                 _parts.report.warn(namedElement("nodes", node, source.name) +
-                                   ": EXT_mesh_gpu_instancing places an instance " + beyondFarthest() + "; not drawn");
+                                   ": EXT_mesh_gpu_instancing places an instance " + outOfRangeText() + "; not drawn");
                 continue;
             }
             places.push_back(new osg::MatrixTransform(instance));

@@ -14,7 +14,7 @@
 namespace osgGpuAnimation::gltf
 {
 
-/// Finds what of a character lies too far out for the import, see TransformBound::farthest.
+/// Finds what of a character lies too far out for the import, see TransformBound::maxNumber.
 class CharacterReach
 {
 public:

@@ -54,7 +54,7 @@ std::vector<float> numbersOf(const osg::Array* array, std::size_t components)
 /// False: 0 is written in its place, as the import would refuse it.
 bool isWritten(float number)
 {
-    return std::abs(number) <= TransformBound::farthest;
+    return std::abs(number) <= TransformBound::maxNumber;
 }
 
 bool isOfEachVertex(const osg::Array* array, std::size_t vertices)

@@ -40,7 +40,7 @@ CheckedTransform checked(const osg::Matrixd& matrix, const TransformBound& above
     if (made.transform.outer && !made.transform.outer->isFinite()) return faulty;
     if (made.transform.outer) made.reach = made.reach * TransformBound::of(*made.transform.outer);
     made.reach = made.reach * TransformBound::of(made.transform.inner);
-    return isNear(made.reach, 0.0) ? made : CheckedTransform{{}, "it takes what is below " + beyondFarthest(), above};
+    return isNear(made.reach, 0.0) ? made : CheckedTransform{{}, "it takes what is below " + outOfRangeText(), above};
 }
 
 } // namespace

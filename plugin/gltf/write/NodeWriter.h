@@ -37,7 +37,7 @@ struct NodePlace
 /// factor.
 inline bool isNear(const TransformBound& reach, double radius)
 {
-    return 2.0 * std::max({reach.stretch, reach.distance, reach.of(radius)}) <= TransformBound::farthest &&
+    return 2.0 * std::max({reach.stretch, reach.distance, reach.of(radius)}) <= TransformBound::maxNumber &&
            std::isfinite(reach.stretch + reach.distance);
 }
 

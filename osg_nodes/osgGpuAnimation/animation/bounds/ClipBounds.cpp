@@ -20,20 +20,9 @@ namespace osgGpuAnimation
 namespace
 {
 
-double length(const glm::dvec4& v)
-{
-    return glm::length(v);
-}
-
-double largestOf3(const glm::dvec4& v)
-{
-    return largestComponent(glm::dvec3(v));
-}
-
-double lengthOf3(const glm::dvec4& v)
-{
-    return glm::length(glm::dvec3(v));
-}
+constexpr auto length = [](const glm::dvec4& v) { return glm::length(v); };
+constexpr auto lengthOf3 = [](const glm::dvec4& v) { return glm::length(glm::dvec3(v)); };
+constexpr auto maxOf3 = [](const glm::dvec4& v) { return maxComponent(glm::dvec3(v)); };
 
 /// A Hermite piece as a Bézier curve. The convex hull of its points contains the curve; the same is true of its
 /// derivatives.
@@ -81,16 +70,16 @@ void boundSlerp(const glm::vec4& a, const glm::vec4& b, TrackMotion& out)
 void boundNormalized(const Cubic& q, TrackMotion& out)
 {
     const glm::dvec4 middle = Rotation::unit(q.points[0] + q.points[1] + q.points[2] + q.points[3]);
-    double least = std::numeric_limits<double>::max();
+    double min = std::numeric_limits<double>::max();
     for (const glm::dvec4& point : q.points)
-        least = std::min(least, glm::dot(middle, point));
-    if (!(least > 1e-3 * q.value(length)))
+        min = std::min(min, glm::dot(middle, point));
+    if (!(min > 1e-3 * q.value(length)))
     {
         out.turn1 = out.turn2 = std::numeric_limits<double>::infinity();
         return;
     }
-    out.turn1 = 2.0 * q.first(length) / least;
-    out.turn2 = 1.5 * out.turn1 * out.turn1 + 2.0 * q.second(length) / least;
+    out.turn1 = 2.0 * q.first(length) / min;
+    out.turn2 = 1.5 * out.turn1 * out.turn1 + 2.0 * q.second(length) / min;
 }
 
 TrackMotion boundLinear(const JointTransform& a, const JointTransform& b)
@@ -99,8 +88,8 @@ TrackMotion boundLinear(const JointTransform& a, const JointTransform& b)
     TrackMotion motion;
     motion.shift = std::max(glm::length(t0), glm::length(t1));
     motion.shift1 = glm::length(t1 - t0);
-    motion.size = std::max(largestComponent(s0), largestComponent(s1));
-    motion.size1 = largestComponent(s1 - s0);
+    motion.size = std::max(maxComponent(s0), maxComponent(s1));
+    motion.size1 = maxComponent(s1 - s0);
     boundSlerp(a.rotation, b.rotation, motion);
     return motion;
 }
@@ -113,9 +102,9 @@ TrackMotion boundSpline(const JointTransform* a, const JointTransform* b)
     motion.shift = translation.value(lengthOf3);
     motion.shift1 = translation.first(lengthOf3);
     motion.shift2 = translation.second(lengthOf3);
-    motion.size = scale.value(largestOf3);
-    motion.size1 = scale.first(largestOf3);
-    motion.size2 = scale.second(largestOf3);
+    motion.size = scale.value(maxOf3);
+    motion.size1 = scale.first(maxOf3);
+    motion.size2 = scale.second(maxOf3);
     if (a[0].translation.w == 1.0f)
         boundSlerp(a[0].rotation, b[0].rotation, motion);
     else
@@ -157,6 +146,54 @@ ChainMotion ChainMotion::child(const TrackMotion& motion) const
     return result;
 }
 
+namespace
+{
+
+/// Moves the boxes of the palette entries through a clip and collects the space that they cover.
+///
+/// The sampling rate of each piece between two keyframes is chosen so that the deviation from straight lines (see
+/// ChainMotion) adds at most a hundredth to the box, with at most 16 steps. Most pieces need one step, since most
+/// deviations are well inside the box of the clip.
+class ClipSweep
+{
+public:
+    /// The set must outlive this object. entryBoxes: one box per palette entry.
+    ClipSweep(const AnimationSet& set, const EntryBoxes& entryBoxes);
+
+    Box restPose();
+    Box clip(const Clip& clip);
+
+private:
+    struct Part
+    {
+        std::size_t joint;
+        TransformedBox box; ///< of a palette entry, in joint space
+        double radius;      ///< distance of the farthest corner from the joint's origin
+    };
+    /// v -> linear · v + origin
+    struct JointToModel
+    {
+        glm::dmat3 linear{1.0};
+        glm::dvec3 origin{0.0};
+    };
+
+    void sample(const KeyframePair& keyframes);
+    void boundMotion(const KeyframePair& keyframes);
+    int stepsNeeded() const;
+    void addGrown(const std::vector<Aabb3d>& boxes, int steps);
+    void sweepPiece(KeyframePair keyframes);
+
+    const AnimationSet& _set;
+    std::vector<Part> _parts;
+    std::vector<bool> _isNeeded;              ///< by joint: true if it or a descendant has a part
+    std::vector<JointToModel> _jointsToModel; ///< by joint, at the last sample
+    std::vector<ChainMotion> _motions;        ///< by joint
+    std::vector<Aabb3d> _boxes;               ///< by part, at the last sample
+    std::vector<Aabb3d> _boxesBefore;         ///< by part, at the previous keyframe
+    Aabb3d _seen;                             ///< all samples
+    Aabb3d _swept;                            ///< all samples and the space between them
+};
+
 ClipSweep::ClipSweep(const AnimationSet& set, const EntryBoxes& entryBoxes)
     : _set(set), _isNeeded(set.skeleton().jointCount(), false), _jointsToModel(set.skeleton().jointCount()),
       _motions(set.skeleton().jointCount())
@@ -171,8 +208,7 @@ ClipSweep::ClipSweep(const AnimationSet& set, const EntryBoxes& entryBoxes)
         _isNeeded[_parts.back().joint] = true;
     }
     for (std::size_t j = _isNeeded.size(); j-- > 0;)
-        if (_isNeeded[j] && set.skeleton().joint(j).parent >= 0)
-            _isNeeded[static_cast<std::size_t>(set.skeleton().joint(j).parent)] = true;
+        if (_isNeeded[j] && set.skeleton().joint(j).parent >= 0) _isNeeded[set.skeleton().joint(j).parent] = true;
     _boxes.resize(_parts.size());
 }
 
@@ -187,7 +223,7 @@ void ClipSweep::sample(const KeyframePair& keyframes)
         for (int axis = 0; axis < 3; ++axis)
             linear[axis] *= local.scale[axis];
         const int parent = _set.skeleton().joint(j).parent;
-        const JointToModel& above = parent < 0 ? model : _jointsToModel[static_cast<std::size_t>(parent)];
+        const JointToModel& above = parent < 0 ? model : _jointsToModel[parent];
         _jointsToModel[j] = {above.linear * linear, above.linear * glm::dvec3(local.translation) + above.origin};
     }
     for (std::size_t p = 0; p < _parts.size(); ++p)
@@ -204,14 +240,14 @@ void ClipSweep::boundMotion(const KeyframePair& keyframes)
     {
         if (!_isNeeded[j]) continue;
         const int parent = _set.skeleton().joint(j).parent;
-        const ChainMotion above = parent < 0 ? ChainMotion() : _motions[static_cast<std::size_t>(parent)];
+        const ChainMotion above = parent < 0 ? ChainMotion() : _motions[parent];
         _motions[j] = above.child(TrackMotion::between(keyframes, j));
     }
 }
 
 int ClipSweep::stepsNeeded() const
 {
-    constexpr double mostSteps = 16.0;
+    constexpr double maxSteps = 16.0;
     const double allowed = 0.01 * _seen.diagonal();
     double steps = 1.0;
     for (std::size_t p = 0; p < _parts.size(); ++p)
@@ -222,7 +258,7 @@ int ClipSweep::stepsNeeded() const
         both.add(_boxesBefore[p]);
         steps = std::max(steps, std::ceil(std::sqrt(maxDeviation / (allowed + _seen.slackAround(both)))));
     }
-    return static_cast<int>(std::min(steps, mostSteps));
+    return static_cast<int>(std::min(steps, maxSteps));
 }
 
 void ClipSweep::addGrown(const std::vector<Aabb3d>& boxes, int steps)
@@ -277,12 +313,14 @@ Box ClipSweep::clip(const Clip& clip)
     return _swept.toBox();
 }
 
+} // namespace
+
 Box boundsOfClip(const AnimationSet& set, int clip, const EntryBoxes& entryBoxes)
 {
     assert(entryBoxes.size() == set.paletteSize() && "a box a palette entry");
     ClipSweep sweep(set, entryBoxes);
     if (clip < 0 || static_cast<std::size_t>(clip) >= set.clips().size()) return sweep.restPose();
-    return sweep.clip(set.clips()[static_cast<std::size_t>(clip)]);
+    return sweep.clip(set.clips()[clip]);
 }
 
 std::vector<Box> boundsOfClips(const AnimationSet& set, const EntryBoxes& entryBoxes)

@@ -36,51 +36,6 @@ struct ChainMotion
     double maxDeviation(double radius) const { return (origin2 + linear2 * radius) / 8.0; }
 };
 
-/// Moves the boxes of the palette entries through a clip and collects the space that they cover.
-///
-/// The sampling rate of each piece between two keyframes is chosen so that the deviation from straight lines (see
-/// ChainMotion) adds at most a hundredth to the box, with at most 16 steps. Most pieces need one step, since most
-/// deviations are well inside the box of the clip.
-class ClipSweep
-{
-public:
-    /// The set must outlive this object. entryBoxes: one box per palette entry.
-    ClipSweep(const AnimationSet& set, const EntryBoxes& entryBoxes);
-
-    Box restPose();
-    Box clip(const Clip& clip);
-
-private:
-    struct Part
-    {
-        std::size_t joint;
-        TransformedBox box; ///< of a palette entry, in joint space
-        double radius;      ///< distance of the farthest corner from the joint's origin
-    };
-    /// v -> linear · v + origin
-    struct JointToModel
-    {
-        glm::dmat3 linear{1.0};
-        glm::dvec3 origin{0.0};
-    };
-
-    void sample(const KeyframePair& keyframes);
-    void boundMotion(const KeyframePair& keyframes);
-    int stepsNeeded() const;
-    void addGrown(const std::vector<Aabb3d>& boxes, int steps);
-    void sweepPiece(KeyframePair keyframes);
-
-    const AnimationSet& _set;
-    std::vector<Part> _parts;
-    std::vector<bool> _isNeeded;              ///< by joint: true if it or a descendant has a part
-    std::vector<JointToModel> _jointsToModel; ///< by joint, at the last sample
-    std::vector<ChainMotion> _motions;        ///< by joint
-    std::vector<Aabb3d> _boxes;               ///< by part, at the last sample
-    std::vector<Aabb3d> _boxesBefore;         ///< by part, at the previous keyframe
-    Aabb3d _seen;                             ///< all samples
-    Aabb3d _swept;                            ///< all samples and the space between them
-};
-
 /// A box, in model space, that contains every vertex at every time of the clip. The box is conservative: a vertex is a
 /// convex combination of its positions under each of its palette entries, and between the sampled times the box grows
 /// by a bound on the deviation from a straight line. The box is tight: the sampling rate follows the rotation of the

@@ -36,7 +36,7 @@ public:
         instruction.samples[0] = sample;
         Pose::evaluate(_set, instruction, AffineMatrix(), _palette);
         const double weightChange = changeOfWeights();
-        double farthest = 0.0;
+        double max = 0.0;
         for (std::size_t entry = 0; entry < std::min(_palette.size(), _boxes.size()); ++entry)
         {
             if (!isMoving(entry)) continue;
@@ -49,10 +49,10 @@ public:
             }
             if (weightChange > 0.0 && entry < _reaches.size())
                 moved += weightChange * static_cast<double>(_reaches[entry]) * sizeOf(_palette[entry]);
-            farthest = std::max(farthest, moved);
+            max = std::max(max, moved);
         }
         _before = _palette;
-        return farthest;
+        return max;
     }
 
     /// The diagonal of the box around all corners.
@@ -73,14 +73,12 @@ private:
 
     double changeOfWeights() const
     {
-        double largest = 0.0;
+        double max = 0.0;
         for (std::size_t entry = 0; entry < _before.size(); ++entry)
             for (int row = 0; row < 3 && _set.palette()[entry].kind == PaletteEntry::Kind::Weights; ++row)
                 for (int i = 0; i < 4; ++i)
-                    largest =
-                        std::max<double>(largest, std::abs(_palette[entry].rows[static_cast<std::size_t>(row)][i] -
-                                                           _before[entry].rows[static_cast<std::size_t>(row)][i]));
-        return largest;
+                    max = std::max<double>(max, std::abs(_palette[entry].rows[row][i] - _before[entry].rows[row][i]));
+        return max;
     }
 
     /// An upper bound for the length of a transformed unit vector.

@@ -58,7 +58,7 @@ glm::dvec4 rotationAt(const JointTransform& value, const JointTransform& tangent
 
 JointRange rangeOf(const Clip& clip, std::size_t joint)
 {
-    glm::dvec3 low(HUGE_VAL), high(-HUGE_VAL), smallest(HUGE_VAL), largest(-HUGE_VAL);
+    glm::dvec3 low(HUGE_VAL), high(-HUGE_VAL), minScale(HUGE_VAL), maxScale(-HUGE_VAL);
     glm::dvec4 sum(0.0);
     forEachPoint(clip, joint,
                  [&](const JointTransform& value, const JointTransform& tangent, double sign)
@@ -69,15 +69,15 @@ JointRange rangeOf(const Clip& clip, std::size_t joint)
                      const glm::dvec4 rotation = rotationAt(value, tangent, sign);
                      low = glm::min(low, translation);
                      high = glm::max(high, translation);
-                     smallest = glm::min(smallest, scale);
-                     largest = glm::max(largest, scale);
+                     minScale = glm::min(minScale, scale);
+                     maxScale = glm::max(maxScale, scale);
                      sum += glm::dot(sum, rotation) < 0.0 ? -rotation : rotation;
                  });
     JointRange range;
     range.translation = 0.5 * (low + high);
     range.shift = 0.5 * glm::length(high - low);
-    range.scale = 0.5 * (smallest + largest);
-    range.stretch = 0.5 * largestComponent(largest - smallest);
+    range.scale = 0.5 * (minScale + maxScale);
+    range.stretch = 0.5 * maxComponent(maxScale - minScale);
     range.rotation = Rotation::unit(sum);
     forEachPoint(clip, joint,
                  [&](const auto&... point)
@@ -105,10 +105,10 @@ void JointRange::add(const JointRange& other)
     shift = std::max(glm::length(translation - middle) + shift, glm::length(other.translation - middle) + other.shift);
     translation = middle;
 
-    const glm::dvec3 smallest = glm::min(scale - stretch, other.scale - other.stretch);
-    const glm::dvec3 largest = glm::max(scale + stretch, other.scale + other.stretch);
-    scale = 0.5 * (smallest + largest);
-    stretch = 0.5 * largestComponent(largest - smallest);
+    const glm::dvec3 minScale = glm::min(scale - stretch, other.scale - other.stretch);
+    const glm::dvec3 maxScale = glm::max(scale + stretch, other.scale + other.stretch);
+    scale = 0.5 * (minScale + maxScale);
+    stretch = 0.5 * maxComponent(maxScale - minScale);
 
     const glm::dvec4 both =
         Rotation::unit(rotation + (glm::dot(rotation, other.rotation) < 0.0 ? -other.rotation : other.rotation));
@@ -128,7 +128,7 @@ void JointRange::addDifference(const JointRange& added, const JointTransform& re
         const double change = std::abs(added.scale[axis] - static_cast<double>(reference.scale[axis])) + added.stretch;
         if (size > static_cast<double>(POSE_SMALLEST_SCALE)) growth = std::max(growth, change / size);
     }
-    stretch += largestComponent(glm::abs(scale) + stretch) * growth;
+    stretch += maxComponent(glm::abs(scale) + stretch) * growth;
 }
 
 JointRange PoseExtent::Joint::range(const JointRange& others) const

@@ -56,7 +56,7 @@ struct PoseExtent
 
     std::vector<Joint> joints; ///< one per joint of the set; empty: no joint was ever set
     /// No morph weight of the pose has a larger absolute value; at least 1. 0: no weight was ever set.
-    double largestWeight = 0.0;
+    double maxWeight = 0.0;
 };
 
 /// The largest length of a joint at rest.

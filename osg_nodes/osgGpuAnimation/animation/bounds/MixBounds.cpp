@@ -24,7 +24,7 @@ struct JointToModelBound
     glm::dmat3 linear{1.0}; ///< the centre
     double norm = 1.0;      ///< bound of |centre|
     double deviation = 0.0; ///< bound of |A - centre|
-    double largest = 1.0;   ///< bound of |A|
+    double maxNorm = 1.0;   ///< bound of |A|
     glm::dvec3 origin{0.0}; ///< centre of the ball
     double radius = 0.0;    ///< of the ball
 
@@ -36,25 +36,25 @@ JointToModelBound JointToModelBound::child(const JointRange& range) const
     JointToModelBound result;
     const double distance = glm::length(range.translation) + range.shift;
     const double directed = norm * range.shift + deviation * distance;
-    const double undirected = largest * distance;
+    const double undirected = maxNorm * distance;
     result.origin = directed <= undirected ? origin + linear * range.translation : origin;
     result.radius = radius + std::min(directed, undirected);
 
     // |R S - R0 S0| <= |R - R0| |S| + |S - S0|, and a turn by an angle moves a unit vector by 2 sin of its half.
-    const double size = largestComponent(glm::abs(range.scale) + range.stretch);
+    const double size = maxComponent(glm::abs(range.scale) + range.stretch);
     const double turned = range.turn < 1.5 ? 2.0 * std::sin(range.turn) : 2.0;
     const double own = turned * size + range.stretch;
-    const double ownNorm = largestComponent(range.scale);
-    result.largest = largest * size;
+    const double ownNorm = maxComponent(range.scale);
+    result.maxNorm = maxNorm * size;
     result.linear = linear * Rotation::matrix(range.rotation);
     for (int axis = 0; axis < 3; ++axis)
         result.linear[axis] *= range.scale[axis];
     result.norm = norm * ownNorm;
     result.deviation = norm * own + deviation * (ownNorm + own);
-    if (result.deviation <= result.largest) return result;
+    if (result.deviation <= result.maxNorm) return result;
     result.linear = glm::dmat3(0.0);
     result.norm = 0.0;
-    result.deviation = result.largest;
+    result.deviation = result.maxNorm;
     return result;
 }
 
@@ -74,7 +74,7 @@ MixBounds::MixBounds(const AnimationSet& set, Boxes boxes) : _set(set), _boxes(s
 {
     for (const MorphWeights& morph : set.morphs())
         for (const float weight : morph.isProperty() ? std::vector<float>() : morph.defaults)
-            _largestRestWeight = std::max(_largestRestWeight, std::abs(static_cast<double>(weight)));
+            _maxRestWeight = std::max(_maxRestWeight, std::abs(static_cast<double>(weight)));
 }
 
 MixBounds::MixBounds(const AnimationSet& set, const EntryBoxes& entryBoxes)
@@ -87,7 +87,7 @@ MixBounds::~MixBounds() = default;
 const Clip* MixBounds::findClip(int clip) const
 {
     const bool isKnown = clip >= 0 && static_cast<std::size_t>(clip) < _set.clips().size();
-    return isKnown ? &_set.clips()[static_cast<std::size_t>(clip)] : nullptr;
+    return isKnown ? &_set.clips()[clip] : nullptr;
 }
 
 std::shared_ptr<const MixBounds::Ranges> MixBounds::rangesOf(int clip) const
@@ -146,12 +146,12 @@ Box MixBounds::entryBox(const std::vector<PlayedClip>& played, std::size_t entry
     {
         const bool isMixed = clip.part == PlayedClip::Part::Mixed;
         isAdded = isAdded || !(isMixed || clip.pose);
-        if (!clip.pose || !(clip.pose->largestWeight > 0.0)) continue;
+        if (!clip.pose || !(clip.pose->maxWeight > 0.0)) continue;
         isPosed = isPosed || isMixed;
         if (isMixed)
-            posed = std::max(posed, clip.pose->largestWeight);
+            posed = std::max(posed, clip.pose->maxWeight);
         else
-            added += clip.pose->largestWeight + _largestRestWeight;
+            added += clip.pose->maxWeight + _maxRestWeight;
     }
     Box box = _boxes.ofClips[entry];
     if (isAdded) box.add(_boxes.withAdded[entry]);
@@ -168,12 +168,12 @@ Box MixBounds::box(const std::vector<PlayedClip>& played, std::uint64_t constrai
     for (std::size_t c = 0; c < _set.constraintChains().size(); ++c)
         if (constraints >> c & 1)
             for (const int joint : _set.constraintChains()[c].joints)
-                ranges[static_cast<std::size_t>(joint)].turn = JointRange::anyTurn;
+                ranges[joint].turn = JointRange::anyTurn;
     std::vector<JointToModelBound> bounds;
     for (std::size_t joint = 0; joint < ranges.size(); ++joint)
     {
         const int parent = _set.skeleton().joint(joint).parent;
-        const JointToModelBound above = parent < 0 ? JointToModelBound() : bounds[static_cast<std::size_t>(parent)];
+        const JointToModelBound above = parent < 0 ? JointToModelBound() : bounds[parent];
         bounds.push_back(above.child(ranges[joint]));
     }
     Aabb3d all;
@@ -181,7 +181,7 @@ Box MixBounds::box(const std::vector<PlayedClip>& played, std::uint64_t constrai
     {
         const PaletteEntry& entry = _set.palette()[e];
         if (entry.joint < 0 || _boxes.ofClips[e].empty()) continue;
-        all.add(transformed(entry, entryBox(played, e), bounds[static_cast<std::size_t>(entry.joint)]));
+        all.add(transformed(entry, entryBox(played, e), bounds[entry.joint]));
     }
     return all.toBox();
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
-#include <osgGpuAnimation/animation/ClipMixer.h>
+#include <osgGpuAnimation/animation/playback/PlayedClip.h>
 #include <osgGpuAnimation/math/Box.h>
 
 #include <cstdint>
@@ -60,7 +60,7 @@ private:
 
     const AnimationSet& _set;
     Boxes _boxes;
-    double _largestRestWeight = 0.0; ///< no morph weight of the rest pose has a larger absolute value
+    double _maxRestWeight = 0.0; ///< no morph weight of the rest pose has a larger absolute value
     mutable std::mutex _mutex;
     mutable std::map<int, std::shared_ptr<const Ranges>> _ranges; ///< by clip
 };

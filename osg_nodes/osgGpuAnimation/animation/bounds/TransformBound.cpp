@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/bounds/TransformBound.h>
 
+#include <osgGpuAnimation/math/Box.h>
+
 #include <layout.glsl>
 
 #include <glm/geometric.hpp>
@@ -11,49 +13,49 @@
 namespace osgGpuAnimation
 {
 
-static_assert(TransformBound::farthest == POSE_LARGEST_NUMBER, "the import lets nothing through that shaders limit");
+static_assert(TransformBound::maxNumber == POSE_LARGEST_NUMBER, "the import lets nothing through that shaders limit");
 
 namespace
 {
 
-/// Of a value, or of a value and its tangents: a spline stays within their sum.
-struct Largest
+/// Widens the bound to a value, or to a value and its tangents: a spline stays within their sum.
+void widen(TransformBound& bound, const JointTransform* transforms, std::size_t count)
 {
-    double translation = 0.0;
-    double scale = 0.0;
-
-    void add(const JointTransform* transforms, std::size_t count)
+    TransformBound sum{0.0, 0.0};
+    for (std::size_t i = 0; i < count; ++i)
     {
-        double far = 0.0, large = 0.0;
-        for (std::size_t i = 0; i < count; ++i)
-        {
-            far += glm::length(glm::dvec3(transforms[i].translation));
-            const glm::dvec3 sizes = glm::abs(glm::dvec3(transforms[i].scale));
-            large += std::max({sizes.x, sizes.y, sizes.z});
-        }
-        // Keep NaN: it compares false, so fits() is false.
-        if (!(far <= translation)) translation = far;
-        if (!(large <= scale)) scale = large;
+        sum.distance += glm::length(glm::dvec3(transforms[i].translation));
+        sum.stretch += maxComponent(glm::dvec3(transforms[i].scale));
     }
-};
+    // Keep NaN: it compares false, so fits() is false.
+    if (!(sum.distance <= bound.distance)) bound.distance = sum.distance;
+    if (!(sum.stretch <= bound.stretch)) bound.stretch = sum.stretch;
+}
+
+/// The local bounds of all joints at rest.
+std::vector<TransformBound> localsAtRest(const Skeleton& skeleton)
+{
+    std::vector<TransformBound> locals;
+    for (const Joint& joint : skeleton.joints())
+        locals.push_back(TransformBound::of(joint.rest));
+    return locals;
+}
 
 /// Of each joint in the clip.
-void addClip(const Clip& clip, std::vector<Largest>& locals)
+void addClip(const Clip& clip, std::vector<TransformBound>& locals)
 {
     for (std::size_t keyframe = 0; keyframe < clip.keyframeCount(); ++keyframe)
         for (std::size_t joint = 0; joint < locals.size(); ++joint)
-            locals[joint].add(clip.at(keyframe, joint), clip.transformsPerTrack());
+            widen(locals[joint], clip.at(keyframe, joint), clip.transformsPerTrack());
 }
 
-std::vector<TransformBound> chained(const Skeleton& skeleton, const std::vector<Largest>& locals)
+std::vector<TransformBound> chained(const Skeleton& skeleton, const std::vector<TransformBound>& locals)
 {
     std::vector<TransformBound> bounds;
-    bounds.reserve(locals.size());
     for (std::size_t joint = 0; joint < locals.size(); ++joint)
     {
-        const TransformBound local{locals[joint].scale, locals[joint].translation};
         const int parent = skeleton.joint(joint).parent;
-        bounds.push_back(parent < 0 ? local : bounds[static_cast<std::size_t>(parent)] * local);
+        bounds.push_back(parent < 0 ? locals[joint] : bounds[parent] * locals[joint]);
     }
     return bounds;
 }
@@ -63,11 +65,12 @@ TransformBound boundOf(const AffineMatrix& matrix)
     return TransformBound::of(matrix.toColumns());
 }
 
-bool isSmall(const glm::vec4& numbers)
+bool isSmall(const JointTransform& transform)
 {
-    for (int i = 0; i < 4; ++i)
-        if (!(std::abs(double(numbers[i])) <= TransformBound::farthest)) return false;
-    return true;
+    bool isSmall = true;
+    for (std::size_t i = 0; i < 12; ++i)
+        isSmall = isSmall && std::abs(transform.number(i)) <= TransformBound::maxNumber; // false for NaN
+    return isSmall;
 }
 
 } // namespace
@@ -81,9 +84,9 @@ TransformBound TransformBound::of(const glm::dmat4& matrix)
 
 TransformBound TransformBound::of(const JointTransform& transform)
 {
-    Largest own;
-    own.add(&transform, 1);
-    return {own.scale, own.translation};
+    TransformBound own{0.0, 0.0};
+    widen(own, &transform, 1);
+    return own;
 }
 
 TransformBound TransformBound::operator*(const TransformBound& inner) const
@@ -99,15 +102,12 @@ void TransformBound::add(const TransformBound& other)
 
 std::vector<TransformBound> boundsAtRest(const Skeleton& skeleton)
 {
-    std::vector<Largest> locals(skeleton.jointCount());
-    for (std::size_t joint = 0; joint < locals.size(); ++joint)
-        locals[joint].add(&skeleton.joint(joint).rest, 1);
-    return chained(skeleton, locals);
+    return chained(skeleton, localsAtRest(skeleton));
 }
 
 std::vector<TransformBound> boundsOfClip(const Skeleton& skeleton, const Clip& clip)
 {
-    std::vector<Largest> locals(skeleton.jointCount());
+    std::vector<TransformBound> locals(skeleton.jointCount(), {0.0, 0.0});
     addClip(clip, locals);
     return chained(skeleton, locals);
 }
@@ -116,14 +116,10 @@ bool fits(const Skeleton& skeleton, const Clip& clip)
 {
     const std::vector<TransformBound> bounds = boundsOfClip(skeleton, clip);
     return std::all_of(bounds.begin(), bounds.end(), [](const TransformBound& bound) { return bound.fits(); }) &&
-           std::all_of(clip.data().begin(), clip.data().end(),
-                       [](const JointTransform& transform) {
-                           return isSmall(transform.translation) && isSmall(transform.rotation) &&
-                                  isSmall(transform.scale);
-                       });
+           std::all_of(clip.data().begin(), clip.data().end(), isSmall);
 }
 
-std::string beyondFarthest()
+std::string outOfRangeText()
 {
     return "farther out than 1e18, the limit for float numbers";
 }
@@ -140,16 +136,14 @@ std::vector<TransformBound> boundsOfEntries(const AnimationSet& set)
     std::vector<TransformBound> entries;
     for (const PaletteEntry& entry : set.palette())
         entries.push_back(entry.joint < 0 ? TransformBound{0.0, 0.0}
-                                          : joints[static_cast<std::size_t>(entry.joint)] * boundOf(entry.inverseBind));
+                                          : joints[entry.joint] * boundOf(entry.inverseBind));
     return entries;
 }
 
 bool hasModestPalette(const AnimationSet& set)
 {
     // Joints of several clips may meet in one pose.
-    std::vector<Largest> locals(set.skeleton().jointCount());
-    for (std::size_t joint = 0; joint < locals.size(); ++joint)
-        locals[joint].add(&set.restPose()[joint], 1);
+    std::vector<TransformBound> locals = localsAtRest(set.skeleton());
     for (const Clip& clip : set.clips())
         addClip(clip, locals);
     const std::vector<TransformBound> toModel = chained(set.skeleton(), locals);
@@ -158,13 +152,12 @@ bool hasModestPalette(const AnimationSet& set)
     {
         if (entry.joint < 0) continue;
         TransformBound inner = boundOf(entry.inverseBind), above;
-        const Largest& local = locals[static_cast<std::size_t>(entry.joint)];
-        if (entry.track >= 0) inner = TransformBound{local.scale, local.translation} * inner;
+        if (entry.track >= 0) inner = locals[entry.joint] * inner;
         const TransformBound outer = boundOf(entry.parentBind) * inner;
         if (entry.parent >= 0)
         {
-            const PaletteEntry& parent = set.palette()[static_cast<std::size_t>(entry.parent)];
-            above = toModel[static_cast<std::size_t>(parent.joint)] * boundOf(parent.inverseBind);
+            const PaletteEntry& parent = set.palette()[entry.parent];
+            above = toModel[parent.joint] * boundOf(parent.inverseBind);
         }
         if (!inner.fits() || !outer.fits() || !(above * outer).fits()) return false;
     }

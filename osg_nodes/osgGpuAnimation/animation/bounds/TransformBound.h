@@ -17,7 +17,7 @@ namespace osgGpuAnimation
 struct TransformBound
 {
     /// The limit for drawing and playing: the square of a length must fit a float (OSG's bounding spheres).
-    static constexpr double farthest = 1e18;
+    static constexpr double maxNumber = 1e18;
 
     double stretch = 1.0;  ///< the largest length of a transformed vector of length 1
     double distance = 0.0; ///< the largest distance of the transformed origin
@@ -29,24 +29,24 @@ struct TransformBound
     void add(const TransformBound& other);
     /// The largest distance from the origin of a transformed point that was within the radius.
     double of(double radius) const { return stretch * radius + distance; }
-    bool fits() const { return stretch <= farthest && distance <= farthest; } ///< false for NaN
+    bool fits() const { return stretch <= maxNumber && distance <= maxNumber; } ///< false for NaN
 };
 
 /// One per joint, from the joint to the model: at rest, or at all times of the clip.
 std::vector<TransformBound> boundsAtRest(const Skeleton& skeleton);
 std::vector<TransformBound> boundsOfClip(const Skeleton& skeleton, const Clip& clip);
 
-/// True if all joints at all times of the clip, and all its numbers, are within `farthest`.
+/// True if all joints at all times of the clip, and all its numbers, are within `maxNumber`.
 bool fits(const Skeleton& skeleton, const Clip& clip);
 
 /// The end of messages about transforms that are too large.
-std::string beyondFarthest();
+std::string outOfRangeText();
 
 /// One per palette entry, over the rest pose and all clips; 0 for entries of weights.
 std::vector<TransformBound> boundsOfEntries(const AnimationSet& set);
 
 /// True if the shaders compute finite palettes of the set without limiting products (see POSE_LARGEST_NUMBER), in all
-/// mixes of its rest pose and clips, with root matrices of numbers up to `farthest`. Posed joints and additive layers
+/// mixes of its rest pose and clips, with root matrices of numbers up to `maxNumber`. Posed joints and additive layers
 /// are not part of it. Reads all keyframes.
 bool hasModestPalette(const AnimationSet& set);
 

@@ -31,8 +31,8 @@ bool isWithin(float value, float low, float high)
 glm::dmat4 restMatrix(const Skeleton& skeleton, int joint, int ancestor)
 {
     glm::dmat4 matrix(1.0);
-    for (; joint != ancestor; joint = skeleton.joint(static_cast<std::size_t>(joint)).parent)
-        matrix = skeleton.joint(static_cast<std::size_t>(joint)).rest.toMatrix().toColumns() * matrix;
+    for (; joint != ancestor; joint = skeleton.joint(joint).parent)
+        matrix = skeleton.joint(joint).rest.toMatrix().toColumns() * matrix;
     return matrix;
 }
 
@@ -50,13 +50,13 @@ Result<std::vector<int>> chainOf(const Skeleton& skeleton, const std::vector<std
     }
     std::vector<int> chain;
     for (int joint = named.back(); joint >= 0 && (chain.empty() || chain.back() != named.front());
-         joint = skeleton.joint(static_cast<std::size_t>(joint)).parent)
+         joint = skeleton.joint(joint).parent)
         chain.push_back(joint);
     std::reverse(chain.begin(), chain.end());
     std::size_t place = 0;
     for (std::size_t i = 0; i < named.size(); ++i)
     {
-        const auto found = std::find(chain.begin() + static_cast<std::ptrdiff_t>(place), chain.end(), named[i]);
+        const auto found = std::find(chain.begin() + place, chain.end(), named[i]);
         if (found == chain.end() || chain.front() != named.front())
             return Error{"joint \"" + names[i == 0 ? names.size() - 1 : i] + "\" is no descendant of joint \"" +
                          names[i == 0 ? 0 : i - 1] + "\""};
@@ -134,7 +134,7 @@ Result<ConstraintChain> resolved(const Skeleton& skeleton, const TwoBoneIk& limb
     chain.softReach = static_cast<double>(limb.softReach);
 
     // In the space of the limb's parent, where the constraint is solved: spaces above may mirror.
-    const int parent = skeleton.joint(static_cast<std::size_t>(chain.joints.front())).parent;
+    const int parent = skeleton.joint(chain.joints.front()).parent;
     const auto rest = [&](std::size_t place) { return restMatrix(skeleton, chain.joints[place], parent); };
     const glm::dmat4 mid = rest(chain.mid);
     const glm::dvec3 start(rest(0)[3]), middle(mid[3]), end(rest(chain.joints.size() - 1)[3]), none(0.0);

@@ -15,7 +15,7 @@ namespace
 {
 
 /// The target as far as the turn speed allows, seen from the offset at rest.
-glm::vec3 turnedTowards(const ConstraintChain& chain, const ConstraintGoal& goal, double largestAngle)
+glm::vec3 turnedTowards(const ConstraintChain& chain, const ConstraintGoal& goal, double maxAngle)
 {
     using namespace AxisTurns;
     const glm::dvec3 wanted = glm::dvec3(goal.target.position) - chain.restEye;
@@ -23,10 +23,10 @@ glm::vec3 turnedTowards(const ConstraintChain& chain, const ConstraintGoal& goal
     const glm::dvec3 from =
         goal.shown ? direction(glm::dvec3(*goal.shown) - chain.restEye, chain.restForward) : chain.restForward;
     const double angle = std::atan2(glm::length(glm::cross(from, to)), glm::dot(from, to));
-    if (angle <= largestAngle) return goal.target.position;
+    if (angle <= maxAngle) return goal.target.position;
     const glm::dvec3 side = across(chain.restUp, from);
     const glm::dvec3 halfTurn = logarithm(shortest(from, to, glm::dot(side, side) > 0.5 ? side : anyAcross(from)));
-    const glm::dvec3 line = turned(exponential(halfTurn * (largestAngle / angle)), from);
+    const glm::dvec3 line = turned(exponential(halfTurn * (maxAngle / angle)), from);
     return glm::vec3(chain.restEye + line * glm::length(wanted));
 }
 
@@ -44,16 +44,11 @@ bool ConstraintGoals::isDefault() const
     return std::all_of(_goals.begin(), _goals.end(), [](const ConstraintGoal& goal) { return goal.isDefault(); });
 }
 
-bool ConstraintGoals::advance(const std::vector<ConstraintChain>& chains, double seconds)
+void ConstraintGoals::advance(const std::vector<ConstraintChain>& chains, double seconds)
 {
-    bool isAnyTurned = false;
     for (std::size_t c = 0; c < chains.size(); ++c)
-    {
-        if (!(chains[c].turnSpeed > 0.0) || c >= _goals.size() || !_goals[c].hasTarget) continue;
-        _goals[c].shown = turnedTowards(chains[c], _goals[c], chains[c].turnSpeed * std::abs(seconds));
-        isAnyTurned = true;
-    }
-    return isAnyTurned;
+        if (chains[c].turnSpeed > 0.0 && _goals[c].hasTarget)
+            _goals[c].shown = turnedTowards(chains[c], _goals[c], chains[c].turnSpeed * std::abs(seconds));
 }
 
 void ConstraintGoals::write(std::vector<ConstraintTarget>& outTargets) const

@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/animation/constraints/ConstraintChain.h>
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -25,18 +26,25 @@ class ConstraintGoals
 public:
     explicit ConstraintGoals(std::size_t count) : _goals(count) {}
 
-    ConstraintGoal& goal(std::size_t constraint) { return _goals[constraint]; }
+    /// For a change: the pose instruction is then out of date.
+    ConstraintGoal& goal(std::size_t constraint)
+    {
+        ++_changeCount;
+        return _goals[constraint];
+    }
     const ConstraintGoal& goal(std::size_t constraint) const { return _goals[constraint]; }
     bool isDefault() const; ///< true if all goals are
 
-    /// Turns the lines to the targets by at most the turn speeds. seconds: finite; negative counts as positive. False
-    /// if no goal with a target has a turn speed, so that nothing has changed.
-    bool advance(const std::vector<ConstraintChain>& chains, double seconds);
+    std::uint64_t changeCount() const { return _changeCount; } ///< calls of goal() for a change
+
+    /// Turns the lines to the targets by at most the turn speeds. seconds: finite; negative counts as positive.
+    void advance(const std::vector<ConstraintChain>& chains, double seconds);
     /// The targets of a pose instruction; none if no constraint has an effect.
     void write(std::vector<ConstraintTarget>& outTargets) const;
 
 private:
     std::vector<ConstraintGoal> _goals;
+    std::uint64_t _changeCount = 0;
 };
 
 } // namespace osgGpuAnimation

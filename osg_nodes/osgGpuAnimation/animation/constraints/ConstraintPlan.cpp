@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/animation/constraints/ConstraintPlan.h>
 
 #include <algorithm>
+#include <numeric>
 
 namespace osgGpuAnimation
 {
@@ -12,14 +13,9 @@ namespace
 bool isAbove(const Skeleton& skeleton, int ancestor, int joint)
 {
     do
-        joint = skeleton.joint(static_cast<std::size_t>(joint)).parent;
+        joint = skeleton.joint(joint).parent;
     while (joint >= 0 && joint != ancestor);
     return joint >= 0;
-}
-
-int depthOf(const Skeleton& skeleton, int joint)
-{
-    return skeleton.depths()[static_cast<std::size_t>(joint)];
 }
 
 /// A step and, per joint of its path, the step that has corrected the joint before, or -1.
@@ -41,9 +37,9 @@ ConstraintStep stepOf(std::size_t constraint, const Skeleton& skeleton, const st
             first = start;
     ConstraintStep step;
     step.constraint = constraint;
-    step.level = static_cast<std::size_t>(depthOf(skeleton, first));
+    step.level = static_cast<std::size_t>(skeleton.depths()[first]);
     for (int joint = chain.front(); joint != first;)
-        step.path.push_back(joint = skeleton.joint(static_cast<std::size_t>(joint)).parent);
+        step.path.push_back(joint = skeleton.joint(joint).parent);
     std::reverse(step.path.begin(), step.path.end());
     step.chainBegin = step.path.size();
     step.path.insert(step.path.end(), chain.begin(), chain.end());
@@ -63,21 +59,20 @@ ConstraintPlan::ConstraintPlan(const Skeleton& skeleton, const std::vector<Const
         if ((active >> c & 1) == 0) continue;
         Draft draft{stepOf(c, skeleton, chains, active), {}};
         for (const int joint : draft.step.path)
-            draft.sourceSteps.push_back(lastSteps[static_cast<std::size_t>(joint)]);
+            draft.sourceSteps.push_back(lastSteps[joint]);
         for (const int joint : chains[c].joints)
-            lastSteps[static_cast<std::size_t>(joint)] = static_cast<int>(drafts.size());
+            lastSteps[joint] = static_cast<int>(drafts.size());
         drafts.push_back(std::move(draft));
     }
 
     std::vector<std::size_t> order(drafts.size());
-    for (std::size_t i = 0; i < order.size(); ++i)
-        order[i] = i;
+    std::iota(order.begin(), order.end(), std::size_t(0));
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return drafts[a].step.level < drafts[b].step.level; });
     const auto placeOf = [&](int step, int joint)
     {
         if (step < 0) return CorrectionPlace();
-        const ConstraintStep& source = drafts[static_cast<std::size_t>(step)].step;
+        const ConstraintStep& source = drafts[step].step;
         const std::vector<int>& joints = chains[source.constraint].joints;
         const auto place = std::find(joints.begin(), joints.end(), joint) - joints.begin();
         return CorrectionPlace{source.firstCorrection, joints.size(), static_cast<std::size_t>(place)};

@@ -31,7 +31,7 @@ std::uint32_t countOfBits(const CompactPart& part)
 
 std::uint32_t countOfBits(const CompactRotation& part)
 {
-    return countOfBits(static_cast<const CompactPart&>(part)) + (part.place == CompactTracks::largestPlace ? 2u : 0u);
+    return countOfBits(static_cast<const CompactPart&>(part)) + (part.place == CompactTracks::maxPlace ? 2u : 0u);
 }
 
 /// A run of bits of a record.
@@ -53,7 +53,7 @@ public:
         if (shift + count > 32)
         {
             _bit += 32;
-            words |= std::uint64_t(word()) << (32 - shift);
+            words |= static_cast<std::uint64_t>(word()) << (32 - shift);
             _bit -= 32;
         }
         _bit += count;
@@ -81,24 +81,12 @@ glm::uvec3 readNumbers(BitRun& run, const glm::uvec3& bits)
     return numbers;
 }
 
-glm::vec4 rounded(const CompactPart& part, const glm::vec4& value)
-{
-    return glm::vec4(part.valueOf(part.numbersOf(glm::vec3(value))), 0.0f);
-}
-
-glm::vec4 roundedRotation(const CompactRotation& part, const glm::vec4& value)
-{
-    std::uint32_t place = part.place;
-    const glm::vec3 components = CompactTracks::componentsOf(value, place);
-    return CompactTracks::rotationOf(part.valueOf(part.numbersOf(components)), place);
-}
-
 bool isSound(const CompactPart& part, std::uint32_t bits, std::size_t recordSize)
 {
     if (!part.isMoving()) return part.firstBit == -1 && part.bits == glm::uvec3(0u);
     const auto first = static_cast<std::size_t>(part.firstBit);
     const glm::vec3 sum = glm::abs(part.base) + glm::abs(part.step);
-    return glm::all(glm::lessThanEqual(part.bits, glm::uvec3(CompactTracks::mostBits))) &&
+    return glm::all(glm::lessThanEqual(part.bits, glm::uvec3(CompactTracks::maxBits))) &&
            first / CompactTracks::texelBits < recordSize &&
            first % CompactTracks::texelBits + bits <= CompactTracks::texelBits && std::isfinite(sum.x + sum.y + sum.z);
 }
@@ -113,8 +101,8 @@ glm::uvec3 CompactTracks::Part::numbersOf(const glm::vec3& value) const
         if (!(step[axis] > 0.0f)) continue;
         const double number = std::round((static_cast<double>(value[axis]) - static_cast<double>(base[axis])) /
                                          static_cast<double>(step[axis]));
-        const auto largest = static_cast<double>((1u << bits[axis]) - 1u);
-        if (number > 0.0) numbers[axis] = static_cast<std::uint32_t>(std::min(number, largest));
+        const auto max = static_cast<double>((1u << bits[axis]) - 1u);
+        if (number > 0.0) numbers[axis] = static_cast<std::uint32_t>(std::min(number, max));
     }
     return numbers;
 }
@@ -124,30 +112,30 @@ glm::vec3 CompactTracks::Part::valueOf(const glm::uvec3& numbers) const
     return base + step * glm::vec3(numbers);
 }
 
-void CompactTracks::Part::setRange(const glm::vec3& least, const glm::vec3& most, const glm::uvec3& newBits)
+void CompactTracks::Part::setRange(const glm::vec3& min, const glm::vec3& max, const glm::uvec3& newBits)
 {
     bits = newBits;
     for (int axis = 0; axis < 3; ++axis)
     {
-        const float extent = most[axis] - least[axis];
+        const float extent = max[axis] - min[axis];
         step[axis] = bits[axis] == 0 ? 0.0f : extent / static_cast<float>((1u << bits[axis]) - 1u);
-        base[axis] = bits[axis] == 0 ? least[axis] + 0.5f * extent : least[axis];
+        base[axis] = bits[axis] == 0 ? min[axis] + 0.5f * extent : min[axis];
     }
 }
 
-void CompactTracks::RotationPart::setRange(const glm::vec3& least, const glm::vec3& most, const glm::uvec3& newBits)
+void CompactTracks::RotationPart::setRange(const glm::vec3& min, const glm::vec3& max, const glm::uvec3& newBits)
 {
-    const auto unitsOf = [](float units, float largest)
-    { return static_cast<std::uint32_t>(std::clamp(units, 0.0f, largest)); };
+    const auto unitsOf = [](float units, float limit)
+    { return static_cast<std::uint32_t>(std::clamp(units, 0.0f, limit)); };
     bits = newBits;
     glm::uvec3 newRanges;
     for (int axis = 0; axis < 3; ++axis)
     {
-        constexpr auto largest = static_cast<float>(rangeSteps - 1);
-        const std::uint32_t first = unitsOf(std::floor((least[axis] + 1.0f) / rangeUnit), largest);
+        constexpr auto maxUnits = static_cast<float>(rangeSteps - 1);
+        const std::uint32_t first = unitsOf(std::floor((min[axis] + 1.0f) / rangeUnit), maxUnits);
         const float begin = static_cast<float>(first) * rangeUnit - 1.0f;
-        const std::uint32_t extent = unitsOf(std::ceil((most[axis] - begin) / rangeUnit) - 1.0f, largest);
-        const float middle = 0.5f * (least[axis] + most[axis]);
+        const std::uint32_t extent = unitsOf(std::ceil((max[axis] - begin) / rangeUnit) - 1.0f, maxUnits);
+        const float middle = 0.5f * (min[axis] + max[axis]);
         newRanges[axis] = bits[axis] > 0 ? first | extent << 10
                                          : unitsOf(std::round((middle + 1.0f) / fineUnit), 2.0f / fineUnit - 1.0f);
     }
@@ -160,16 +148,16 @@ void CompactTracks::RotationPart::setRanges(const glm::uvec3& newRanges)
     for (int axis = 0; axis < 3; ++axis)
     {
         const float extent = static_cast<float>((ranges[axis] >> 10) + 1u) * rangeUnit;
-        const float least = static_cast<float>(ranges[axis] & (rangeSteps - 1u)) * rangeUnit - 1.0f;
-        step[axis] = bits[axis] == 0 ? 0.0f : std::ldexp(extent, -static_cast<int>(std::min(bits[axis], mostBits)));
-        base[axis] = bits[axis] == 0 ? static_cast<float>(ranges[axis]) * fineUnit - 1.0f : least + 0.5f * step[axis];
+        const float min = static_cast<float>(ranges[axis] & (rangeSteps - 1u)) * rangeUnit - 1.0f;
+        step[axis] = bits[axis] == 0 ? 0.0f : std::ldexp(extent, -static_cast<int>(std::min(bits[axis], maxBits)));
+        base[axis] = bits[axis] == 0 ? static_cast<float>(ranges[axis]) * fineUnit - 1.0f : min + 0.5f * step[axis];
     }
 }
 
 glm::vec3 CompactTracks::componentsOf(const glm::vec4& rotation, std::uint32_t& place)
 {
     glm::dvec4 unit = Rotation::unit(glm::dvec4(rotation));
-    if (place == largestPlace)
+    if (place == maxPlace)
     {
         place = 0;
         for (int i = 1; i < 4; ++i)
@@ -200,9 +188,14 @@ glm::vec4 CompactTracks::rotationOf(const glm::vec3& v, std::uint32_t place)
 
 void CompactTracks::round(const Track& track, JointTransform& transform)
 {
-    if (track.translation.isMoving()) transform.translation = rounded(track.translation, transform.translation);
-    if (track.rotation.isMoving()) transform.rotation = roundedRotation(track.rotation, transform.rotation);
-    if (track.scale.isMoving()) transform.scale = rounded(track.scale, transform.scale);
+    const auto rounded = [](const Part& part, const glm::vec3& value) { return part.valueOf(part.numbersOf(value)); };
+    if (track.translation.isMoving())
+        transform.translation = glm::vec4(rounded(track.translation, glm::vec3(transform.translation)), 0.0f);
+    if (track.scale.isMoving()) transform.scale = glm::vec4(rounded(track.scale, glm::vec3(transform.scale)), 0.0f);
+    if (!track.rotation.isMoving()) return;
+    std::uint32_t place = track.rotation.place;
+    const glm::vec3 components = componentsOf(transform.rotation, place);
+    transform.rotation = rotationOf(rounded(track.rotation, components), place);
 }
 
 /// First fit, the largest parts first.
@@ -234,7 +227,7 @@ bool CompactTracks::placeParts()
         *texel += run.bits;
     }
     recordSize = used.size();
-    return recordSize <= mostTexels;
+    return recordSize <= maxTexels;
 }
 
 bool CompactTracks::pack(std::vector<JointTransform>& data, std::size_t trackCount)
@@ -259,7 +252,7 @@ bool CompactTracks::pack(std::vector<JointTransform>& data, std::size_t trackCou
             if (!track.rotation.isMoving()) continue;
             std::uint32_t place = track.rotation.place;
             BitRun run = write(track.rotation, componentsOf(transform.rotation, place));
-            if (track.rotation.place == largestPlace) run.write(place, 2);
+            if (track.rotation.place == maxPlace) run.write(place, 2);
         }
     unpack(data, trackCount);
     return true;
@@ -269,7 +262,7 @@ bool CompactTracks::isFor(std::size_t jointCount, std::size_t keyframeCount) con
 {
     const auto isSoundRotation = [&](const RotationPart& part)
     {
-        return isSound(part, countOfBits(part), recordSize) && part.place <= largestPlace &&
+        return isSound(part, countOfBits(part), recordSize) && part.place <= maxPlace &&
                glm::all(glm::lessThan(part.ranges, glm::uvec3(rangeSteps * rangeSteps)));
     };
     const auto areSound = [&](const Track& track)
@@ -277,7 +270,7 @@ bool CompactTracks::isFor(std::size_t jointCount, std::size_t keyframeCount) con
         return isSound(track.translation, countOfBits(track.translation), recordSize) &&
                isSoundRotation(track.rotation) && isSound(track.scale, countOfBits(track.scale), recordSize);
     };
-    return tracks.size() == jointCount && recordSize <= mostTexels && records.size() == recordSize * keyframeCount &&
+    return tracks.size() == jointCount && recordSize <= maxTexels && records.size() == recordSize * keyframeCount &&
            std::all_of(tracks.begin(), tracks.end(), areSound);
 }
 
@@ -287,7 +280,7 @@ void CompactTracks::unpack(std::vector<JointTransform>& data, std::size_t trackC
     std::vector<glm::uvec4> record(recordSize);
     for (std::size_t k = 0; k < keyframeCount; ++k)
     {
-        std::copy_n(records.begin() + static_cast<std::ptrdiff_t>(k * recordSize), recordSize, record.begin());
+        std::copy_n(records.begin() + k * recordSize, recordSize, record.begin());
         for (std::size_t joint = 0; joint < tracks.size(); ++joint)
         {
             const Track& track = tracks[joint];
@@ -302,7 +295,7 @@ void CompactTracks::unpack(std::vector<JointTransform>& data, std::size_t trackC
             if (!track.rotation.isMoving()) continue;
             BitRun run(record.data(), track.rotation.firstBit);
             const glm::uvec3 numbers = readNumbers(run, track.rotation.bits);
-            const std::uint32_t place = track.rotation.place == largestPlace ? run.read(2) : track.rotation.place;
+            const std::uint32_t place = track.rotation.place == maxPlace ? run.read(2) : track.rotation.place;
             transform.rotation = rotationOf(track.rotation.valueOf(numbers), place);
         }
     }
@@ -315,40 +308,40 @@ bool PartKeys::move() const
     return false;
 }
 
-void PartKeys::range(glm::vec3& outLeast, glm::vec3& outMost) const
+void PartKeys::range(glm::vec3& outMin, glm::vec3& outMax) const
 {
-    outLeast = outMost = glm::vec3((*this)[0]);
+    outMin = outMax = glm::vec3((*this)[0]);
     for (std::size_t k = 1; k < count; ++k)
     {
-        outLeast = glm::min(outLeast, glm::vec3((*this)[k]));
-        outMost = glm::max(outMost, glm::vec3((*this)[k]));
+        outMin = glm::min(outMin, glm::vec3((*this)[k]));
+        outMax = glm::max(outMax, glm::vec3((*this)[k]));
     }
 }
 
-void PartKeys::range(std::uint32_t place, glm::vec3& outLeast, glm::vec3& outMost) const
+void PartKeys::range(std::uint32_t place, glm::vec3& outMin, glm::vec3& outMax) const
 {
-    outLeast = glm::vec3(1.0f);
-    outMost = glm::vec3(-1.0f);
+    outMin = glm::vec3(1.0f);
+    outMax = glm::vec3(-1.0f);
     for (std::size_t k = 0; k < count; ++k)
     {
         std::uint32_t omitted = place;
         const glm::vec3 components = CompactTracks::componentsOf((*this)[k], omitted);
-        outLeast = glm::min(outLeast, components);
-        outMost = glm::max(outMost, components);
+        outMin = glm::min(outMin, components);
+        outMax = glm::max(outMax, components);
     }
 }
 
 std::uint32_t PartKeys::omittedPlace() const
 {
     // An omitted component of 0.3 makes errors of the others up to three times larger: worth two bits per keyframe.
-    constexpr double least = 0.3;
+    constexpr double min = 0.3;
     glm::dvec4 smallest(1.0);
     for (std::size_t k = 0; k < count; ++k)
         smallest = glm::min(smallest, glm::abs(Rotation::unit(glm::dvec4((*this)[k]))));
     int best = 3;
     for (int i = 0; i < 3; ++i)
         if (smallest[i] > smallest[best]) best = i;
-    return smallest[best] >= least ? static_cast<std::uint32_t>(best) : CompactTracks::largestPlace;
+    return smallest[best] >= min ? static_cast<std::uint32_t>(best) : CompactTracks::maxPlace;
 }
 
 } // namespace osgGpuAnimation

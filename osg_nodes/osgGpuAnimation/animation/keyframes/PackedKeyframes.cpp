@@ -153,8 +153,8 @@ void PackedKeyframes::writeRecord(const Clip& clip, std::size_t keyframe)
 {
     if (const CompactTracks* compact = clip.compactTracks())
     {
-        const auto first = compact->records.begin() + static_cast<std::ptrdiff_t>(keyframe * compact->recordSize);
-        _texels.insert(_texels.end(), first, first + static_cast<std::ptrdiff_t>(compact->recordSize));
+        const auto first = compact->records.begin() + keyframe * compact->recordSize;
+        _texels.insert(_texels.end(), first, first + compact->recordSize);
     }
     for (const Column& column : _columns)
         for (std::size_t i = 0; i < clip.transformsPerTrack(); ++i)

@@ -134,7 +134,7 @@ void PosedKeyframe::setNumber(std::size_t track, std::size_t number, float value
 
 void PosedKeyframe::clear(std::size_t track)
 {
-    const auto first = _texels.begin() + static_cast<std::ptrdiff_t>(3 * track);
+    const auto first = _texels.begin() + 3 * track;
     std::fill(first, first + 3, glm::uvec4(POSE_NOT_SET));
     _isEmpty = std::all_of(_texels.begin(), _texels.end(),
                            [](const glm::uvec4& words) { return words == glm::uvec4(POSE_NOT_SET); });

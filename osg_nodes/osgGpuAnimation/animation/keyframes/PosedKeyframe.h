@@ -67,11 +67,11 @@ private:
 namespace PosedNumbers
 {
 
-constexpr float largest = 1e18f; ///< the largest absolute value
-/// False beyond ±largest and for NaN.
+constexpr float maxNumber = 1e18f; ///< the largest absolute value
+/// False beyond ±maxNumber and for NaN.
 inline bool isAllowed(float number)
 {
-    return std::abs(number) <= largest;
+    return std::abs(number) <= maxNumber;
 }
 inline bool isAllowed(const glm::vec3& numbers)
 {

@@ -25,8 +25,8 @@ double frobeniusNorm(const glm::dmat3& m)
 bool isModest(const glm::dvec4& translation)
 {
     // Beyond this distance single precision resolves only a tenth of a unit.
-    constexpr double farthest = 1e6;
-    return glm::length(glm::dvec3(translation)) <= farthest;
+    constexpr double max = 1e6;
+    return glm::length(glm::dvec3(translation)) <= max;
 }
 
 /// True if a child can be computed through this matrix and its inverse in single precision with almost no loss. The
@@ -124,7 +124,7 @@ void PaletteBuilder::collectFurtherBinds()
     const auto want = [this](int joint, const AffineMatrix& inverseBind)
     {
         if (!_entryOfKey.emplace(keyOf(joint, inverseBind), -1).second) return;
-        const auto level = static_cast<std::size_t>(_skeleton.depths()[static_cast<std::size_t>(joint)]) + 1;
+        const auto level = static_cast<std::size_t>(_skeleton.depths()[joint]) + 1;
         if (_further.size() <= level) _further.resize(level + 1);
         _further[level].emplace_back(joint, inverseBind);
     };
@@ -171,8 +171,8 @@ PaletteEntry PaletteBuilder::entryBelow(int parentJoint, PaletteEntry::Kind kind
     entry.inverseBind = inverseBind;
     if (parentJoint >= 0)
     {
-        entry.parent = _layout.mainEntry[static_cast<std::size_t>(parentJoint)];
-        entry.parentBind = inverse(_mainBinds[static_cast<std::size_t>(parentJoint)]);
+        entry.parent = _layout.mainEntry[parentJoint];
+        entry.parentBind = inverse(_mainBinds[parentJoint]);
     }
     return entry;
 }
@@ -210,7 +210,7 @@ void PaletteBuilder::nameEntries()
     }
     _layout.entryOfRigidJoint.assign(_skeleton.jointCount(), -1);
     for (int joint : _rigidJoints)
-        _layout.entryOfRigidJoint[static_cast<std::size_t>(joint)] = _entryOfKey[keyOf(joint, AffineMatrix())];
+        _layout.entryOfRigidJoint[joint] = _entryOfKey[keyOf(joint, AffineMatrix())];
 }
 
 } // namespace

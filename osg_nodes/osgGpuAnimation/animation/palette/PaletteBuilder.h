@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/animation/PaletteEntry.h>
 #include <osgGpuAnimation/animation/Skeleton.h>
+#include <osgGpuAnimation/animation/Skin.h>
 
 #include <vector>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/playback/BlendList.h>
 
-#include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/animation/JointPose.h>
 
 #include <layout.glsl>
 
@@ -73,9 +73,7 @@ void BlendList::removeLightest()
     assert(lightest < _count && "some blend priority has two samples, or there are differences");
     if (lightest == _count) lightest = _count - 1;
     const Item removed = _places[lightest].item;
-    std::move(_places.begin() + static_cast<std::ptrdiff_t>(lightest) + 1,
-              _places.begin() + static_cast<std::ptrdiff_t>(_count),
-              _places.begin() + static_cast<std::ptrdiff_t>(lightest));
+    std::move(_places.begin() + lightest + 1, _places.begin() + _count, _places.begin() + lightest);
     --_count;
     _sampleCount -= removed.isDifference ? 2 : 1;
     if (!removed.isDifference) fillBlendPriority(removed.blendPriority, removed.sample.weight);
@@ -131,7 +129,7 @@ RootMotion rootMotionOf(const Clip& clip, const PlaybackStep& step, LoopMode loo
 
 void RootMotionBlend::add(const RootMotion& motion, double weight, int blendPriority)
 {
-    const auto end = _blendPriorities.begin() + static_cast<std::ptrdiff_t>(_count);
+    const auto end = _blendPriorities.begin() + _count;
     const auto here = std::find_if(_blendPriorities.begin(), end,
                                    [&](const BlendPriority& one) { return one.number >= blendPriority; });
     if (here == end || here->number != blendPriority)

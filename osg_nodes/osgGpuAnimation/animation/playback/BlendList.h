@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/AnimationEvent.h>
+#include <osgGpuAnimation/animation/Clip.h>
 #include <osgGpuAnimation/animation/ClipMixer.h>
+#include <osgGpuAnimation/animation/PoseInstruction.h>
+#include <osgGpuAnimation/animation/RootMotion.h>
 
 #include <array>
 #include <cstddef>
@@ -22,7 +25,7 @@ namespace osgGpuAnimation
 class BlendList
 {
 public:
-    /// the most samples and differences that all layers can have: of eight clips and a pose each
+    /// the maximum number of samples and differences that all layers can have: of eight clips and a pose each
     static constexpr std::size_t maxItems = maxLayers * (ClipMixer::maxActiveClips + 1);
 
     /// Samples of weight 0 are ignored. At most maxItems samples and differences may be added.

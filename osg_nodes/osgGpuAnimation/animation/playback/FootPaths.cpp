@@ -16,7 +16,7 @@ namespace
 
 constexpr double lowestShare = 0.2;      ///< of a joint's lift: it may be on the ground
 constexpr double speedShare = 1.0 / 3.0; ///< of its largest speed relative to the ground: it may be on the ground
-constexpr double leastLift = 0.01;       ///< of the skeleton's height: less is no step
+constexpr double minLift = 0.01;         ///< of the skeleton's height: less is no step
 constexpr double footHeight = 0.1;       ///< of the skeleton's height: feet come closer to the ground
 constexpr double shortest = 0.03;        ///< of a round: shorter contacts and gaps do not count
 constexpr double nearMedian = 0.15;      ///< of the median speed: steps of feet that are firmly on the ground
@@ -40,14 +40,14 @@ std::vector<bool> movingJoints(const AnimationSet& set)
     std::vector<bool> isMoving(set.skeleton().jointCount(), set.skins().empty() && set.rigidJoints().empty());
     for (const Skin& skin : set.skins())
         for (const int joint : skin.joints)
-            isMoving[static_cast<std::size_t>(joint)] = true;
+            isMoving[joint] = true;
     for (const int joint : set.rigidJoints())
-        isMoving[static_cast<std::size_t>(joint)] = true;
+        isMoving[joint] = true;
     return isMoving;
 }
 
 /// Replaces runs of a value that are shorter than `least`; the samples are a circle or a line.
-void fillShortRuns(std::vector<bool>& samples, bool value, std::size_t least, bool isRound)
+void fillShortRuns(std::vector<bool>& samples, bool value, std::size_t min, bool isRound)
 {
     const std::size_t count = samples.size();
     const auto first = std::find(samples.begin(), samples.end(), !value);
@@ -60,7 +60,7 @@ void fillShortRuns(std::vector<bool>& samples, bool value, std::size_t least, bo
         const bool isLineEnd = !isRound && sample == 0 && i > 0;
         if (samples[sample] != value || isLineEnd)
         {
-            for (std::size_t back = 1; length < least && back <= length; ++back)
+            for (std::size_t back = 1; length < min && back <= length; ++back)
                 samples[(start + i - back) % count] = !value;
             length = 0;
         }
@@ -130,7 +130,7 @@ std::vector<bool> FootPaths::samplesOnGround(const Path& path) const
 {
     const std::size_t count = path.size() - 1;
     const double lowest = lowestOf(path), lifted = lift(path);
-    if (lifted < leastLift * _height) return std::vector<bool>(count, true);
+    if (lifted < minLift * _height) return std::vector<bool>(count, true);
     glm::dvec3 ground(0.0);
     double lowSamples = 0.0, fastest = 0.0;
     for (std::size_t sample = 0; sample < count; ++sample)
@@ -146,9 +146,9 @@ std::vector<bool> FootPaths::samplesOnGround(const Path& path) const
     for (std::size_t sample = 0; sample < count; ++sample)
         isOnGround.push_back(path[sample].y <= lowest + lowestShare * lifted &&
                              glm::length(velocity(path, sample) - ground) <= speedShare * fastest);
-    const auto least = static_cast<std::size_t>(shortest * static_cast<double>(count));
-    fillShortRuns(isOnGround, false, least, isRound(path));
-    fillShortRuns(isOnGround, true, least, isRound(path));
+    const auto min = static_cast<std::size_t>(shortest * static_cast<double>(count));
+    fillShortRuns(isOnGround, false, min, isRound(path));
+    fillShortRuns(isOnGround, true, min, isRound(path));
     return isOnGround;
 }
 
@@ -182,13 +182,12 @@ std::vector<std::size_t> FootPaths::feet() const
     {
         if (!isMoving[joint]) continue;
         lowest = std::min(lowest, lowestOf(_paths[joint]));
-        for (int above = _set.skeleton().joint(joint).parent; above >= 0;
-             above = _set.skeleton().joint(static_cast<std::size_t>(above)).parent)
-            isEnd[static_cast<std::size_t>(above)] = false;
+        for (int above = _set.skeleton().joint(joint).parent; above >= 0; above = _set.skeleton().joint(above).parent)
+            isEnd[above] = false;
     }
     std::vector<std::size_t> found;
     for (std::size_t joint = 0; joint < isMoving.size(); ++joint)
-        if (isEnd[joint] && lift(_paths[joint]) >= leastLift * _height &&
+        if (isEnd[joint] && lift(_paths[joint]) >= minLift * _height &&
             lowestOf(_paths[joint]) <= lowest + footHeight * _height)
             found.push_back(joint);
     return found;
@@ -221,7 +220,7 @@ double FootPaths::groundSpeed(const std::vector<std::size_t>& joints) const
     for (Step& step : steps)
         step.speed = glm::dot(step.way, direction) / step.seconds;
     // The feet slow down before they lift and after they touch: only steps near the median count.
-    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+    const auto middle = steps.begin() + steps.size() / 2;
     std::nth_element(steps.begin(), middle, steps.end(),
                      [](const Step& a, const Step& b) { return a.speed < b.speed; });
     const double median = middle->speed;

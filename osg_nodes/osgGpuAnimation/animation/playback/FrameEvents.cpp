@@ -51,19 +51,12 @@ void PlaybackStepEvents::enterStretch(double from, bool includesFrom)
     _stretchFrom = from;
     _stretchTo = _crossingsLeft > 0.0 ? (_isAscending ? _clip.duration() : 0.0) : _step.to;
     const std::vector<ClipMarker>& markers = _clip.markers();
-    std::size_t first, last; // the markers of this stretch: [first, last)
-    if (_isAscending)
-    {
-        first = markersBefore(markers, from, !includesFrom);
-        last = markersBefore(markers, _stretchTo, true);
-        _markerIndex = first;
-    }
-    else
-    {
-        first = markersBefore(markers, _stretchTo, false);
-        last = markersBefore(markers, from, includesFrom);
-        _markerIndex = last;
-    }
+    // The markers of this stretch: [first, last).
+    const std::size_t first =
+        _isAscending ? markersBefore(markers, from, !includesFrom) : markersBefore(markers, _stretchTo, false);
+    const std::size_t last =
+        _isAscending ? markersBefore(markers, _stretchTo, true) : markersBefore(markers, from, includesFrom);
+    _markerIndex = _isAscending ? first : last;
     _markersLeft = last > first ? last - first : 0;
 }
 
@@ -106,12 +99,11 @@ bool PlaybackStepEvents::next()
 
 bool LayerStep::mayHaveEvents(const std::vector<Clip>& clips) const
 {
-    if (crossfadeMoment >= 0.0 || weightFadeMoment >= 0.0) return true;
+    if (crossfadeMoment || weightFadeMoment) return true;
     for (std::size_t v = 0; v < mixer.activeClipCount(); ++v)
     {
         const ClipMixer::ActiveClip& activeClip = mixer.activeClip(v);
-        if (stepMayHaveEvents(activeClip.move, clips[static_cast<std::size_t>(activeClip.playback.clip())]))
-            return true;
+        if (stepMayHaveEvents(activeClip.move, clips[activeClip.playback.clip()])) return true;
     }
     return false;
 }
@@ -126,15 +118,15 @@ void FrameEvents::add(const LayerStep& step, const std::vector<Clip>& clips)
         const ClipMixer::ActiveClip& activeClip = step.mixer.activeClip(v);
         event.clip = activeClip.playback.clip();
         event.weight = static_cast<float>(activeClip.share);
-        const Clip& clip = clips[static_cast<std::size_t>(event.clip)];
+        const Clip& clip = clips[event.clip];
         if (stepMayHaveEvents(activeClip.move, clip))
             addSource(event, PlaybackStepEvents(clip, activeClip.move, activeClip.playback.loopMode()), v + 1 < count);
     }
     event.type = AnimationEvent::Type::FadeFinished;
-    for (const double moment : {step.crossfadeMoment, step.weightFadeMoment})
+    for (const std::optional<double>& moment : {step.crossfadeMoment, step.weightFadeMoment})
     {
-        event.moment = moment;
-        if (moment >= 0.0) addSource(event, std::nullopt, false);
+        event.moment = moment.value_or(0.0);
+        if (moment) addSource(event, std::nullopt, false);
     }
 }
 

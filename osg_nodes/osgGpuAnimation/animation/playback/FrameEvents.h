@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/animation/AnimationEvent.h>
+#include <osgGpuAnimation/animation/Clip.h>
 #include <osgGpuAnimation/animation/ClipMixer.h>
 
 #include <array>
@@ -61,8 +63,8 @@ struct LayerStep
 {
     std::size_t layer = 0;
     const ClipMixer& mixer;
-    double crossfadeMoment = -1.0; ///< share of the step after which the crossfade ended, in [0, 1]; -1: it did not end
-    double weightFadeMoment = -1.0; ///< the same for the fade of the layer's weight
+    std::optional<double> crossfadeMoment;  ///< share of the step after which the crossfade ended, in [0, 1]
+    std::optional<double> weightFadeMoment; ///< the same for the fade of the layer's weight
 
     /// False if the step has no events: a cheap test, since most steps have none. clips: of the layer's set.
     bool mayHaveEvents(const std::vector<Clip>& clips) const;

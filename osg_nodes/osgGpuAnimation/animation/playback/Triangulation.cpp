@@ -36,16 +36,16 @@ double signedArea(const Points& points, std::size_t a, std::size_t b, std::size_
 /// The points in a unit square.
 Points inUnitSquare(const Points& points)
 {
-    glm::dvec2 least = points.front(), most = least;
+    glm::dvec2 min = points.front(), max = min;
     for (const glm::dvec2& point : points)
     {
-        least = glm::min(least, point);
-        most = glm::max(most, point);
+        min = glm::min(min, point);
+        max = glm::max(max, point);
     }
-    const double size = std::max({most.x - least.x, most.y - least.y, 1e-300});
+    const double size = std::max({max.x - min.x, max.y - min.y, 1e-300});
     Points scaled;
     for (const glm::dvec2& point : points)
-        scaled.push_back((point - least) / size);
+        scaled.push_back((point - min) / size);
     return scaled;
 }
 
@@ -153,7 +153,7 @@ std::vector<PlaneCell> triangulate(const std::vector<glm::dvec2>& points)
     while (apex < order.size() && std::abs(signedArea(scaled, order[0], order[apex - 1], order[apex])) <= flatArea)
         ++apex;
     if (apex >= order.size()) return chain(order);
-    SweepHull hull(scaled, {order.begin(), order.begin() + static_cast<std::ptrdiff_t>(apex)}, order[apex]);
+    SweepHull hull(scaled, {order.begin(), order.begin() + apex}, order[apex]);
     for (std::size_t i = apex + 1; i < order.size(); ++i)
         hull.add(order[i]);
     std::vector<Corners> triangles = hull.takeTriangles();

@@ -42,9 +42,9 @@ BitAllocator::BitAllocator(const AnimationSet& set, std::vector<JointTransform> 
             if (!moving.isMoving) continue;
             std::uint32_t& place = _tracks.tracks[joint].rotation.place;
             if (part == rotationPart)
-                keys.range(place = keys.omittedPlace(), moving.least, moving.most);
+                keys.range(place = keys.omittedPlace(), moving.min, moving.max);
             else
-                keys.range(moving.least, moving.most);
+                keys.range(moving.min, moving.max);
             setBits(joint, part, glm::uvec3(0u));
         }
         round(joint);
@@ -58,7 +58,7 @@ void BitAllocator::setBits(std::size_t joint, std::size_t part, const glm::uvec3
     const auto set = [&](auto& one)
     {
         one.firstBit = 0;
-        one.setRange(moving.least, moving.most, bits);
+        one.setRange(moving.min, moving.max, bits);
     };
     if (part == rotationPart)
         set(track.rotation);
@@ -86,15 +86,15 @@ void BitAllocator::forNumbers(std::size_t joint, Visit visit) const
 {
     for (std::size_t part = 0; part < partCount; ++part)
         for (int axis = 0; _moving[joint][part].isMoving && axis < 3; ++axis)
-            if (bitsOf(joint, part)[axis] < CompactTracks::mostBits) visit(Number{joint, part, axis});
+            if (bitsOf(joint, part)[axis] < CompactTracks::maxBits) visit(Number{joint, part, axis});
 }
 
-float BitAllocator::largestError(const Number& number) const
+float BitAllocator::maxError(const Number& number) const
 {
     const Moving& moving = _moving[number.joint][number.part];
     const CompactTracks::Part& part = partOf(_tracks.tracks[number.joint], number.part);
     const float step =
-        part.bits[number.axis] == 0 ? moving.most[number.axis] - moving.least[number.axis] : part.step[number.axis];
+        part.bits[number.axis] == 0 ? moving.max[number.axis] - moving.min[number.axis] : part.step[number.axis];
     return 0.5f * step;
 }
 
@@ -103,7 +103,7 @@ double BitAllocator::effect(const JointTransform& transform, const Number& numbe
                             const std::vector<AffineMatrix>& jointToModel) const
 {
     JointTransform off = transform;
-    const float error = largestError(number);
+    const float error = maxError(number);
     if (number.part == rotationPart)
     {
         std::uint32_t place = _tracks.tracks[number.joint].rotation.place;
@@ -115,26 +115,24 @@ double BitAllocator::effect(const JointTransform& transform, const Number& numbe
         (off.*partsOfTracks[number.part])[number.axis] += error;
     const glm::vec3 way = off.toMatrix().transformPoint(point) - transform.toMatrix().transformPoint(point);
     const int parent = _set.skeleton().joint(number.joint).parent;
-    return static_cast<double>(
-        glm::length(parent < 0 ? way : jointToModel[static_cast<std::size_t>(parent)].transformVector(way)));
+    return static_cast<double>(glm::length(parent < 0 ? way : jointToModel[parent].transformVector(way)));
 }
 
 void BitAllocator::addBit(const Number& number)
 {
     glm::uvec3 bits = bitsOf(number.joint, number.part);
-    const float before = largestError(number);
+    const float before = maxError(number);
     // The first bits of a narrow range gain nothing: it is rounded to units.
     do
     {
         ++bits[number.axis];
         setBits(number.joint, number.part, bits);
-    } while (bits[number.axis] < CompactTracks::mostBits && !(largestError(number) < before));
+    } while (bits[number.axis] < CompactTracks::maxBits && !(maxError(number) < before));
 }
 
-void BitAllocator::begin(const PoseDistance& distance, double most)
+void BitAllocator::begin(const PoseDistance& distance, double max)
 {
-    const std::vector<JointTransform> pose(_rounded.begin(),
-                                           _rounded.begin() + static_cast<std::ptrdiff_t>(_set.trackCount()));
+    const std::vector<JointTransform> pose(_rounded.begin(), _rounded.begin() + _set.trackCount());
     std::vector<AffineMatrix> jointToModel;
     Pose::jointToModel(_set, pose, AffineMatrix(), jointToModel);
     // Of each joint a point that it moves far: its own one, or that of a child. In its own space.
@@ -146,15 +144,15 @@ void BitAllocator::begin(const PoseDistance& distance, double most)
         forNumbers(joint,
                    [&](const Number& number)
                    {
-                       while (bitsOf(joint, number.part)[number.axis] < CompactTracks::mostBits &&
-                              effect(pose[joint], number, far[joint], jointToModel) > most)
+                       while (bitsOf(joint, number.part)[number.axis] < CompactTracks::maxBits &&
+                              effect(pose[joint], number, far[joint], jointToModel) > max)
                            addBit(number);
                    });
         round(joint);
         const int parent = _set.skeleton().joint(joint).parent;
         if (parent < 0) continue;
         const glm::vec3 inParent = pose[joint].toMatrix().transformPoint(far[joint]);
-        glm::vec3& farther = far[static_cast<std::size_t>(parent)];
+        glm::vec3& farther = far[parent];
         if (glm::length(inParent) > glm::length(farther)) farther = inParent;
     }
 }
@@ -165,7 +163,7 @@ bool BitAllocator::raise(const std::vector<JointTransform>& pose, const PoseDist
     // Numbers of nearly the same effect are raised together: one at a time takes long for deep skeletons.
     constexpr double share = 0.9;
     _effects.clear();
-    double largest = 0.0;
+    double max = 0.0;
     glm::vec3 point = worst.point;
     for (int joint = static_cast<int>(worst.joint); joint >= 0;)
     {
@@ -174,15 +172,15 @@ bool BitAllocator::raise(const std::vector<JointTransform>& pose, const PoseDist
                    [&](const Number& number)
                    {
                        _effects.emplace_back(effect(pose[index], number, point, distance.jointToModel()), number);
-                       largest = std::max(largest, _effects.back().first);
+                       max = std::max(max, _effects.back().first);
                    });
         point = pose[index].toMatrix().transformPoint(point);
         joint = _set.skeleton().joint(index).parent;
     }
-    if (!(largest > 0.0)) return false;
+    if (!(max > 0.0)) return false;
     for (const auto& [way, number] : _effects)
     {
-        if (!(way >= share * largest)) continue;
+        if (!(way >= share * max)) continue;
         addBit(number);
         round(number.joint);
     }
@@ -205,7 +203,7 @@ bool BitAllocator::finish(CompactTracks& outTracks, std::vector<JointTransform>&
             part.firstBit = -1;
         };
         hold(track.translation, &JointTransform::translation);
-        if (track.rotation.place != CompactTracks::largestPlace) hold(track.rotation, &JointTransform::rotation);
+        if (track.rotation.place != CompactTracks::maxPlace) hold(track.rotation, &JointTransform::rotation);
         hold(track.scale, &JointTransform::scale);
     }
     return outTracks.pack(outData, _set.trackCount());

@@ -20,7 +20,7 @@ public:
     BitAllocator(const AnimationSet& set, std::vector<JointTransform> wanted);
 
     /// Begins with the bits with which no number alone moves a point of the first keyframe farther than `most`.
-    void begin(const PoseDistance& distance, double most);
+    void begin(const PoseDistance& distance, double max);
     /// Gives numbers that move the point more bits. pose: a mix of rounded keyframes, the last one of distance.to().
     /// False: all of them have the most bits.
     bool raise(const std::vector<JointTransform>& pose, const PoseDistance& distance, const PoseDistance::Worst& worst);
@@ -36,8 +36,8 @@ private:
     struct Moving
     {
         bool isMoving = false;
-        glm::vec3 least{0.0f};
-        glm::vec3 most{0.0f};
+        glm::vec3 min{0.0f};
+        glm::vec3 max{0.0f};
     };
     struct Number
     {
@@ -49,7 +49,7 @@ private:
     template <typename Visit>
     void forNumbers(std::size_t joint, Visit visit) const;
     glm::uvec3 bitsOf(std::size_t joint, std::size_t part) const;
-    float largestError(const Number& number) const;
+    float maxError(const Number& number) const;
     double effect(const JointTransform& transform, const Number& number, const glm::vec3& point,
                   const std::vector<AffineMatrix>& jointToModel) const;
     void addBit(const Number& number);

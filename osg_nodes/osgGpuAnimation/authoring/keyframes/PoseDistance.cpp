@@ -30,7 +30,7 @@ PoseDistance::PoseDistance(const AnimationSet& set, const EntryBoxes& entryBoxes
         const PaletteEntry& moved = set.palette()[entry];
         const Box& box = entryBoxes[entry];
         if (box.empty() || moved.joint < 0) continue;
-        std::vector<glm::vec3>& points = _points[static_cast<std::size_t>(moved.joint)];
+        std::vector<glm::vec3>& points = _points[moved.joint];
         for (int corner = 0; corner < 8; ++corner)
             points.push_back(moved.inverseBind.transformPoint(box.corner(corner)));
     }
@@ -65,15 +65,15 @@ PoseDistance::Worst PoseDistance::to(const std::vector<JointTransform>& pose)
     };
     if (hasOtherWeights(pose)) return infinite(0);
     Pose::jointToModel(_set, pose, AffineMatrix(), _joints);
-    float farthest = 0.0f; // squared
+    float max = 0.0f; // squared
     for (std::size_t joint = 0; joint < _points.size(); ++joint)
         for (std::size_t i = 0; i < _points[joint].size(); ++i)
         {
             const glm::vec3 way = _joints[joint].transformPoint(_points[joint][i]) - _places[joint][i];
             const float squared = glm::dot(way, way);
             if (!std::isfinite(squared)) return infinite(joint);
-            if (!(squared > farthest)) continue;
-            farthest = squared;
+            if (!(squared > max)) continue;
+            max = squared;
             worst = {std::sqrt(static_cast<double>(squared)), joint, _points[joint][i]};
         }
     return worst;

@@ -47,8 +47,8 @@ double PosedSurface::size() const
 
 bool isPlaced(const glm::vec3& position)
 {
-    constexpr float farthest = 1e18f;
-    return std::abs(position.x) < farthest && std::abs(position.y) < farthest && std::abs(position.z) < farthest;
+    constexpr float max = 1e18f;
+    return std::abs(position.x) < max && std::abs(position.y) < max && std::abs(position.z) < max;
 }
 
 double squaredDistanceToTriangle(const glm::dvec3& point, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)

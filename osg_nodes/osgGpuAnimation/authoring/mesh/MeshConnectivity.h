@@ -66,7 +66,7 @@ public:
     }
     glm::dvec3 at(std::size_t pose, const Corners& corners, int corner) const
     {
-        return glm::dvec3(_surface.poses[pose][corners[static_cast<std::size_t>(corner)]]);
+        return glm::dvec3(_surface.poses[pose][corners[corner]]);
     }
 
     std::size_t triangleCount() const { return _triangleCount; } ///< of the remaining triangles

@@ -15,17 +15,17 @@ namespace osgGpuAnimation
 namespace
 {
 
-constexpr double borderWeight = 4.0;        ///< of the planes that hold open borders, relative to triangles
-constexpr double lengthCost = 1e-4;         ///< of an edge's squared length: of equal costs the shorter edge is first
-constexpr double colorCost = 2.0;           ///< of a squared difference of colours, relative to the squared limit
-constexpr double sharpestTurn = 0.05;       ///< the smallest cosine between the normals before and after
-constexpr std::size_t mostTriangles = 100;  ///< at an edge or a neighbour: the cost of fans is quadratic
-constexpr std::size_t mostCollapsed = 1000; ///< into one point: each further collapse checks all of them
-constexpr double costBeyondLimit = 4.0;     ///< quadrics are means: a collapse of that cost may be near enough
-constexpr std::size_t mostNear = 8;         ///< points of a neighbouring cell to join: dense spots have many
-constexpr double farthestCell = 1e15;       ///< farther ones have no number
-constexpr int mostPasses = 3;               ///< over all remaining edges, for one limit
-constexpr double texCoordsCount = 100.0;    ///< weight relative to normals when a vertex is selected
+constexpr double borderWeight = 4.0;       ///< of the planes that hold open borders, relative to triangles
+constexpr double lengthCost = 1e-4;        ///< of an edge's squared length: of equal costs the shorter edge is first
+constexpr double colorCost = 2.0;          ///< of a squared difference of colours, relative to the squared limit
+constexpr double sharpestTurn = 0.05;      ///< the smallest cosine between the normals before and after
+constexpr std::size_t maxTriangles = 100;  ///< at an edge or a neighbour: the cost of fans is quadratic
+constexpr std::size_t maxCollapsed = 1000; ///< into one point: each further collapse checks all of them
+constexpr double costBeyondLimit = 4.0;    ///< quadrics are means: a collapse of that cost may be near enough
+constexpr std::size_t maxNear = 8;         ///< points of a neighbouring cell to join: dense spots have many
+constexpr double maxCell = 1e15;           ///< farther ones have no number
+constexpr int maxPasses = 3;               ///< over all remaining edges, for one limit
+constexpr double texCoordsCount = 100.0;   ///< weight relative to normals when a vertex is selected
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
@@ -113,18 +113,18 @@ void MeshSimplifier::addPlanes()
 void MeshSimplifier::consider(std::uint32_t from, std::uint32_t to)
 {
     const std::size_t poseCount = _mesh.keyPoseCount();
-    const double most = costBeyondLimit * _squaredLimit;
+    const double max = costBeyondLimit * _squaredLimit;
     const glm::dvec3 recolored(_mesh.colorOf(to) - _mesh.colorOf(from));
     const double ofColor = colorCost * _squaredLimit * glm::dot(recolored, recolored);
     double cost = 0.0;
-    for (std::size_t pose = 0; pose < poseCount && cost <= most; ++pose)
+    for (std::size_t pose = 0; pose < poseCount && cost <= max; ++pose)
     {
         PlaneQuadric quadric = _quadrics[from * poseCount + pose];
         quadric += _quadrics[to * poseCount + pose];
         const glm::dvec3 place = _mesh.at(pose, to), way = place - _mesh.at(pose, from);
         cost = std::max(cost, quadric.at(place) + lengthCost * glm::dot(way, way) + ofColor);
     }
-    if (cost <= most) _next.push({cost, from, to, _mesh.changeCountOf(from), _mesh.changeCountOf(to)});
+    if (cost <= max) _next.push({cost, from, to, _mesh.changeCountOf(from), _mesh.changeCountOf(to)});
 }
 
 void MeshSimplifier::considerAll()
@@ -144,7 +144,7 @@ void MeshSimplifier::considerNear()
     for (std::uint32_t point = 0; point < _mesh.pointCount(); ++point)
     {
         const glm::dvec3 cell = _mesh.at(0, point) / cellSize;
-        if (_mesh.trianglesAt(point).empty() || !(glm::length(cell) < farthestCell)) continue;
+        if (_mesh.trianglesAt(point).empty() || !(glm::length(cell) < maxCell)) continue;
         points.push_back({{std::llround(cell.x), std::llround(cell.y), std::llround(cell.z)}, point});
     }
     std::sort(points.begin(), points.end());
@@ -155,7 +155,7 @@ void MeshSimplifier::considerNear()
             const Cell there{cell[0] + neighbour % 3 - 1, cell[1] + neighbour / 3 % 3 - 1, cell[2] + neighbour / 9 - 1};
             const auto [first, last] =
                 std::equal_range(points.begin(), points.end(), std::pair(there, std::uint32_t(0)), isBefore);
-            const auto end = first + std::min<std::ptrdiff_t>(last - first, mostNear);
+            const auto end = first + std::min<std::ptrdiff_t>(last - first, maxNear);
             for (auto to = first; to != end; ++to)
                 if (to->second != from && isWithinLimit(from, to->second)) consider(from, to->second);
         }
@@ -177,7 +177,7 @@ void MeshSimplifier::reduce(double limit, bool keepSeams, bool joinPieces)
     _keepsSeams = keepSeams;
     // A collapse may become possible after others.
     bool hasCollapsed = true;
-    for (int pass = 0; pass < mostPasses && hasCollapsed; ++pass)
+    for (int pass = 0; pass < maxPasses && hasCollapsed; ++pass)
     {
         considerAll();
         if (joinPieces) considerNear();
@@ -215,8 +215,8 @@ bool MeshSimplifier::findCorners(std::uint32_t from, std::uint32_t to, std::vect
 {
     const std::vector<std::uint32_t>&here = _mesh.trianglesAt(from), &there = _mesh.trianglesAt(to);
     outMoved.clear();
-    if (here.size() + there.size() > mostTriangles) return false;
-    if (_mesh.collapsedInto(from).size() + _mesh.collapsedInto(to).size() > mostCollapsed) return false;
+    if (here.size() + there.size() > maxTriangles) return false;
+    if (_mesh.collapsedInto(from).size() + _mesh.collapsedInto(to).size() > maxCollapsed) return false;
     for (const std::uint32_t triangle : here)
     {
         Corners corners = _mesh.corners(triangle);
@@ -271,7 +271,7 @@ bool MeshSimplifier::findVertex(std::uint32_t given, std::uint32_t from, std::ui
         if (there != none && isAlike(here, given)) beside = there;
     }
     if (beside == none && _keepsSeams) return false;
-    double least = std::numeric_limits<double>::infinity();
+    double min = std::numeric_limits<double>::infinity();
     for (const std::uint32_t other : _mesh.verticesOf(to))
     {
         if (beside != none && !isAlike(other, beside)) continue;
@@ -279,24 +279,24 @@ bool MeshSimplifier::findVertex(std::uint32_t given, std::uint32_t from, std::ui
         if (!_surface.normals.empty()) unlike -= glm::dot(_surface.normals[other], _surface.normals[given]);
         if (!_surface.texCoords.empty())
             unlike += texCoordsCount * glm::distance(_surface.texCoords[other], _surface.texCoords[given]);
-        if (!(unlike < least)) continue;
-        least = unlike;
+        if (!(unlike < min)) continue;
+        min = unlike;
         outVertex = other;
     }
-    return std::isfinite(least);
+    return std::isfinite(min);
 }
 
 /// True if every point collapsed into `from`, `to` or a neighbour stays within the limit of the new triangles there.
 bool MeshSimplifier::isNear(std::uint32_t from, std::uint32_t to, const std::vector<Corners>& moved) const
 {
     for (const std::uint32_t neighbour : _mesh.neighboursOf(to))
-        if (_mesh.trianglesAt(neighbour).size() > mostTriangles) return false;
+        if (_mesh.trianglesAt(neighbour).size() > maxTriangles) return false;
     const std::vector<Corners> atTo = cornersAfter(to, from, moved);
     if (!areNear(from, atTo) || !areNear(to, atTo)) return false;
     for (const std::uint32_t neighbour : _mesh.neighboursOf(from))
     {
         if (neighbour == to) continue;
-        if (_mesh.trianglesAt(neighbour).size() > mostTriangles) return false;
+        if (_mesh.trianglesAt(neighbour).size() > maxTriangles) return false;
         // Compare with the triangles at the neighbour only, since error() measures there.
         const std::vector<Corners> there = cornersAfter(neighbour, from, moved);
         if (!areNear(neighbour, there.empty() ? atTo : there)) return false;
@@ -357,18 +357,18 @@ double MeshSimplifier::errorOfMoved(const PosedSurface::Poses& poses, const std:
                 corner = vertexOf[_mesh.pointOf(corner)];
     }
     std::vector<std::size_t> nearest(_mesh.pointCount()); // of its triangles, in the pose before
-    double largest = 0.0;                                 // squared
+    double max = 0.0;                                     // squared
     for (std::size_t pose = 0; pose < poses.size(); ++pose)
         for (const Remaining& remaining : all)
             for (const std::uint32_t point : remaining.points)
             {
                 const double distance =
-                    squaredDistance(_mesh.at(pose, point), poses[pose], remaining.triangles, largest, nearest[point]);
-                if (!(distance > largest)) continue;
-                largest = distance;
+                    squaredDistance(_mesh.at(pose, point), poses[pose], remaining.triangles, max, nearest[point]);
+                if (!(distance > max)) continue;
+                max = distance;
                 if (outPose) *outPose = pose;
             }
-    return std::sqrt(largest);
+    return std::sqrt(max);
 }
 
 } // namespace osgGpuAnimation

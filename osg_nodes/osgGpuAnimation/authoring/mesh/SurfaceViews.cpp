@@ -36,16 +36,16 @@ SurfaceViews::SurfaceViews(const Poses& poses)
         const glm::dvec3 aside = std::abs(grid.towards.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
         grid.right = glm::normalize(glm::cross(aside, grid.towards));
         grid.up = glm::cross(grid.towards, grid.right);
-        glm::dvec2 least(std::numeric_limits<double>::infinity()), most(-least);
+        glm::dvec2 min(std::numeric_limits<double>::infinity()), max(-min);
         for (const glm::dvec3 position : poses[grid.pose])
         {
             const glm::dvec2 place(glm::dot(position, grid.right), glm::dot(position, grid.up));
-            least = glm::min(least, place);
-            most = glm::max(most, place);
+            min = glm::min(min, place);
+            max = glm::max(max, place);
         }
-        const double side = std::max(most.x - least.x, most.y - least.y);
-        grid.left = least.x - margin * side;
-        grid.bottom = least.y - margin * side;
+        const double side = std::max(max.x - min.x, max.y - min.y);
+        grid.left = min.x - margin * side;
+        grid.bottom = min.y - margin * side;
         grid.cell = (1.0 + 2.0 * margin) * side / cellsAcross;
         _grids.push_back(grid);
     }

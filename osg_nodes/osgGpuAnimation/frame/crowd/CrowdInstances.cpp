@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 
+#include <osgGpuAnimation/animation/detail/ControllerDetail.h>
 #include <osgGpuAnimation/mesh/lod/LodLevels.h>
 
 #include <glm/geometric.hpp>
@@ -13,7 +14,7 @@ namespace osgGpuAnimation
 {
 
 CrowdPlayback::CrowdPlayback(const AnimationController& controller, double clock)
-    : _offset(controller.time()), _speed(controller.speed()), _clip(controller.clip()),
+    : _offset(controller.time()), _speed(controller.layer(0).settings().speed), _clip(controller.clip()),
       _isPaused(controller.state() != PlayState::Playing)
 {
     if (!_isPaused) _offset -= _speed * clock;
@@ -166,7 +167,7 @@ bool CrowdInstances::updatePosedBox(std::size_t index)
         return true;
     }
     thread_local std::vector<PlayedClip> played;
-    findPlayedClips(*_controllers[index], played);
+    ControllerDetail::findPlayedClips(*_controllers[index], played);
     if (posed && posed->played == played) return false;
     posed = std::make_unique<PosedBox>(PosedBox{played, _mixBounds->box(played, anyConstraints(*_set))});
     return true;
@@ -182,7 +183,7 @@ Box CrowdInstances::bounds() const
         bool isAlone = true;
         if (_controllers[index])
         {
-            findPlayedClips(*_controllers[index], played);
+            ControllerDetail::findPlayedClips(*_controllers[index], played);
             isAlone = played.size() == 1 && played.front().part == PlayedClip::Part::Mixed && !isConstrained(index);
             if (isAlone) clip = played.front().clip;
         }
@@ -198,7 +199,7 @@ CrowdInstances::Handle CrowdInstances::add(const AffineMatrix& rootMatrix, const
                                            const AnimationController& controller, std::uint32_t tint)
 {
     const std::size_t index = size();
-    const bool isPlain = controller.isPlainLoop();
+    const bool isPlain = ControllerDetail::isPlainLoop(controller);
     _rootMatrices.add(rootMatrix);
     _positions.push_back(position);
     _scales.push_back(maxScale(rootMatrix));
@@ -333,13 +334,13 @@ bool CrowdInstances::advance(double seconds, PendingEvents& outEvents)
     for (const std::uint32_t index : _controlled)
     {
         std::unique_ptr<AnimationController>& controller = _controllers[index];
-        controller->advance(seconds, outEvents);
+        ControllerDetail::advance(*controller, seconds, outEvents);
         if (updatePosedBox(index))
         {
             updateMember(index);
             haveSpheresChanged = true;
         }
-        if (!controller->isPlainLoop() || _machines.count(_handles[index]) > 0) continue;
+        if (!ControllerDetail::isPlainLoop(*controller) || _machines.count(_handles[index]) > 0) continue;
         _playbacks[index] = CrowdPlayback(*controller, _clock);
         controller.reset();
         _isControlledKnown = false;

@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/bounds/ClipBounds.h>
 #include <osgGpuAnimation/animation/bounds/MixBounds.h>
+#include <osgGpuAnimation/animation/playback/PendingEvents.h>
 #include <osgGpuAnimation/animation/StateMachine.h>
 #include <osgGpuAnimation/frame/crowd/CrowdCells.h>
 #include <osgGpuAnimation/gpu/buffers/SharedBlocks.h>
@@ -43,13 +44,13 @@ inline osg::Vec4 toColor(std::uint32_t rgba)
     return {channel(0), channel(8), channel(16), channel(24)};
 }
 
-/// The playback of an instance that loops one clip (AnimationController::isPlainLoop): the controller's state in 24
+/// The playback of an instance that loops one clip (ControllerDetail::isPlainLoop): the controller's state in 24
 /// bytes. Its time follows from the crowd's clock, so it needs no advance().
 class CrowdPlayback
 {
 public:
     CrowdPlayback() = default; ///< shows the rest pose
-    /// controller: isPlainLoop(). clock: the crowd's, in seconds.
+    /// controller: ControllerDetail::isPlainLoop(). clock: the crowd's, in seconds.
     CrowdPlayback(const AnimationController& controller, double clock);
 
     int clip() const { return _clip; } ///< -1: none, the rest pose
@@ -122,7 +123,10 @@ public:
     PoseInstruction instruction(std::size_t index) const;
     PoseBatch::BlendCost blendCost(std::size_t index) const; ///< of its instruction
     /// True if a constraint has an effect on it.
-    bool isConstrained(std::size_t index) const { return _controllers[index] && _controllers[index]->isConstrained(); }
+    bool isConstrained(std::size_t index) const
+    {
+        return _controllers[index] && !_controllers[index]->instruction().targets.empty();
+    }
     /// Valid until the next advance(), which may replace it by a CrowdPlayback.
     AnimationController& controller(std::size_t index);
     AnimationController controllerCopy(std::size_t index) const;

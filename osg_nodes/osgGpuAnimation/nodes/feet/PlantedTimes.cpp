@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/nodes/feet/PlantedTimes.h>
 
 #include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/animation/detail/ControllerDetail.h>
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/authoring/FootContacts.h>
 
@@ -42,8 +43,8 @@ bool isWithin(const FootContact& contact, double time, double duration)
 /// True if the layer decides where a joint is.
 bool moves(const AnimationLayer& layer, const AnimationSet& set, std::size_t joint)
 {
-    if (layer.mode() != AnimationLayer::Mode::Override || layer.state() == PlayState::Stopped) return false;
-    const float* mask = set.masks().weights(layer.mask());
+    if (layer.settings().mode != AnimationLayer::Mode::Override || layer.state() == PlayState::Stopped) return false;
+    const float* mask = set.masks().weights(ControllerDetail::maskNumber(layer));
     return layer.weight() * (mask ? mask[joint] : 1.0f) >= 0.5f;
 }
 
@@ -112,7 +113,7 @@ PlantedTimes::Now PlantedTimes::now(const AnimationController& controller)
         }
         if (!heaviest) continue;
         now.isPlanted = planted >= 0.5 * shares;
-        if (!now.isPlanted && layer.isPlaying()) findLanding(set, heaviest->playback, now);
+        if (!now.isPlanted && layer.state() == PlayState::Playing) findLanding(set, heaviest->playback, now);
         break;
     }
     return now;

@@ -2,7 +2,7 @@
 #include <osgGpuAnimation/nodes/properties/Wardrobe.h>
 
 #include <osgGpuAnimation/animation/bounds/ClipBounds.h>
-#include <osgGpuAnimation/animation/retarget/JointNames.h>
+#include <osgGpuAnimation/authoring/retarget/JointNames.h>
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/nodes/properties/AnimatedProperties.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/animation/retarget/RigMatch.h>
+#include <osgGpuAnimation/authoring/retarget/RigMatch.h>
 
-#include <osgGpuAnimation/animation/retarget/JointNames.h>
+#include <osgGpuAnimation/authoring/retarget/JointNames.h>
 #include <osgGpuAnimation/math/Rotation.h>
 
 #include <glm/geometric.hpp>
-#include <glm/gtc/quaternion.hpp>
+#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <cctype>
@@ -53,27 +53,44 @@ std::optional<Error> findFault(const Rig& from, const Rig& to, const RetargetOpt
 
 } // namespace
 
-RestPlaces::RestPlaces(const Skeleton& skeleton)
+JointPlaces::JointPlaces(const Skeleton& skeleton)
+{
+    for (const Joint& joint : skeleton.joints())
+        add(joint, joint.rest);
+}
+
+JointPlaces::JointPlaces(const Skeleton& skeleton, const JointTransform* key, std::size_t step)
 {
     for (const Joint& joint : skeleton.joints())
     {
-        const glm::dmat4 local = joint.rest.toMatrix().toColumns();
-        const glm::dquat rotation = RestPose::unitOf(joint.rest.rotation);
-        const auto parent = static_cast<std::size_t>(std::max(joint.parent, 0));
-        jointToModel.push_back(joint.parent < 0 ? local : jointToModel[parent] * local);
-        rotations.push_back(joint.parent < 0 ? rotation : rotations[parent] * rotation);
-        longest = std::max(longest, glm::length(glm::dvec3(joint.rest.translation)));
+        add(joint, *key);
+        key += step;
     }
 }
 
-glm::dquat RestPlaces::rotationOf(int joint) const
+/// Adds the next joint in level order.
+void JointPlaces::add(const Joint& joint, const JointTransform& transform)
 {
-    return joint < 0 ? glm::dquat(1, 0, 0, 0) : rotations[static_cast<std::size_t>(joint)];
+    const glm::dmat4 local = transform.toMatrix().toColumns();
+    jointToModel.push_back(joint.parent < 0 ? local : jointToModel[joint.parent] * local);
+    rotations.push_back(rotationOf(joint.parent) * RestPose::unitOf(transform.rotation));
 }
 
-glm::dmat3 RestPlaces::linearOf(int joint) const
+glm::dquat JointPlaces::rotationOf(int joint) const
 {
-    return joint < 0 ? glm::dmat3(1.0) : glm::dmat3(jointToModel[static_cast<std::size_t>(joint)]);
+    return joint < 0 ? glm::dquat(1, 0, 0, 0) : rotations[joint];
+}
+
+glm::dmat3 JointPlaces::linearOf(int joint) const
+{
+    return joint < 0 ? glm::dmat3(1.0) : glm::dmat3(jointToModel[joint]);
+}
+
+glm::dvec3 JointPlaces::restOriginOf(std::size_t joint, int ancestor, const JointPlaces& rest) const
+{
+    const glm::dvec3 origin = rest.originOf(joint);
+    if (ancestor < 0) return origin;
+    return glm::dvec3(jointToModel[ancestor] * (glm::inverse(rest.jointToModel[ancestor]) * glm::dvec4(origin, 1.0)));
 }
 
 namespace RestPose
@@ -84,14 +101,22 @@ glm::dquat unitOf(const glm::vec4& rotation)
     return Rotation::quaternion(Rotation::unit(glm::dvec4(rotation)));
 }
 
+double longestJoint(const Skeleton& skeleton)
+{
+    double longest = 0.0;
+    for (const Joint& joint : skeleton.joints())
+        longest = std::max(longest, glm::length(glm::dvec3(joint.rest.translation)));
+    return longest;
+}
+
 bool areAlike(const glm::dquat& a, const glm::dquat& b)
 {
     return std::abs(glm::dot(a, b)) > 1.0 - tolerance * tolerance;
 }
 
-bool areAlike(const glm::vec4& a, const glm::vec4& b, double most)
+bool areAlike(const glm::vec4& a, const glm::vec4& b, double max)
 {
-    return glm::length(glm::dvec3(a) - glm::dvec3(b)) <= most;
+    return glm::length(glm::dvec3(a) - glm::dvec3(b)) <= max;
 }
 
 } // namespace RestPose
@@ -107,7 +132,7 @@ RigMatch::RigMatch(const Rig& from, const Rig& to, const RetargetOptions& option
     {
         int& source = _morphCounterparts[morph];
         if (source < 0) continue;
-        const MorphWeights& counterpart = from.morphs[static_cast<std::size_t>(source)];
+        const MorphWeights& counterpart = from.morphs[source];
         if (counterpart.defaults.size() != to.morphs[morph].defaults.size() ||
             counterpart.isProperty() != to.morphs[morph].isProperty())
             source = -1;
@@ -151,7 +176,7 @@ void RigMatch::addMatches(const Rig& from, const Rig& to)
         match.above = aboveOf[joint];
         int ancestor = from.skeleton.joint(match.source).parent;
         while (ancestor >= 0 && ancestor != match.above)
-            ancestor = from.skeleton.joint(static_cast<std::size_t>(ancestor)).parent;
+            ancestor = from.skeleton.joint(ancestor).parent;
         match.isBelow = ancestor == match.above;
         _matches.push_back(match);
     }
@@ -163,25 +188,26 @@ void RigMatch::markSameRigs(const Rig& from, const Rig& to)
     for (std::size_t joint = 0; joint < _jointCounterparts.size(); ++joint)
     {
         const int parent = to.skeleton.joint(joint).parent;
-        topOf.push_back(parent < 0 ? -1 : topOf[static_cast<std::size_t>(parent)]);
+        topOf.push_back(parent < 0 ? -1 : topOf[parent]);
         if (topOf.back() < 0 && _jointCounterparts[joint] >= 0) topOf.back() = static_cast<int>(joint);
     }
     std::vector<bool> isSame(_jointCounterparts.size(), true); // by top
+    const double nearby = RestPose::tolerance * RestPose::longestJoint(to.skeleton);
     for (const JointMatch& match : _matches)
     {
         const Joint& own = to.skeleton.joint(match.joint);
         const Joint& other = from.skeleton.joint(match.source);
         const auto top = static_cast<std::size_t>(topOf[match.joint]);
-        const bool isChildInBoth = own.parent >= 0 && other.parent >= 0 &&
-                                   _jointCounterparts[static_cast<std::size_t>(own.parent)] == other.parent;
+        const bool isChildInBoth =
+            own.parent >= 0 && other.parent >= 0 && _jointCounterparts[own.parent] == other.parent;
         const bool isRestAlike =
             RestPose::areAlike(RestPose::unitOf(own.rest.rotation), RestPose::unitOf(other.rest.rotation)) &&
-            RestPose::areAlike(own.rest.translation, other.rest.translation, RestPose::tolerance * _toRest.longest) &&
+            RestPose::areAlike(own.rest.translation, other.rest.translation, nearby) &&
             RestPose::areAlike(own.rest.scale, other.rest.scale, RestPose::tolerance);
         if (!isRestAlike || !(top == match.joint || isChildInBoth)) isSame[top] = false;
     }
     for (JointMatch& match : _matches)
-        match.isSameRig = isSame[static_cast<std::size_t>(topOf[match.joint])];
+        match.isSameRig = isSame[topOf[match.joint]];
 }
 
 /// The joints of that name; without a name those that are called so, else the first joint below which the body
@@ -217,18 +243,18 @@ void RigMatch::findHips(const Skeleton& skeleton, const std::string& name)
 /// below the hips.
 double RigMatch::ratioOf(const BodyMatch& body, const std::vector<int>& legOf) const
 {
-    glm::dvec3 ownLeast(std::numeric_limits<double>::max()), ownMost(-ownLeast);
-    glm::dvec3 otherLeast(ownLeast), otherMost(ownMost);
+    glm::dvec3 ownMin(std::numeric_limits<double>::max()), ownMax(-ownMin);
+    glm::dvec3 otherMin(ownMin), otherMax(ownMax);
     const JointMatch* lowest = &_matches[body.hips];
     for (const std::size_t part : body.parts)
     {
         const glm::dvec3 own = _toRest.originOf(_matches[part].joint),
                          other = _fromRest.originOf(_matches[part].source);
         if (own.y < _toRest.originOf(lowest->joint).y) lowest = &_matches[part];
-        ownLeast = glm::min(ownLeast, own);
-        ownMost = glm::max(ownMost, own);
-        otherLeast = glm::min(otherLeast, other);
-        otherMost = glm::max(otherMost, other);
+        ownMin = glm::min(ownMin, own);
+        ownMax = glm::max(ownMax, own);
+        otherMin = glm::min(otherMin, other);
+        otherMax = glm::max(otherMax, other);
     }
     const int leg = legOf[lowest->joint];
     const bool isLeg = leg >= 0 && static_cast<std::size_t>(leg) != lowest->joint;
@@ -236,9 +262,9 @@ double RigMatch::ratioOf(const BodyMatch& body, const std::vector<int>& legOf) c
     const auto topSource = static_cast<std::size_t>(_jointCounterparts[top]);
     const double own = _toRest.originOf(top).y - _toRest.originOf(lowest->joint).y;
     const double other = _fromRest.originOf(topSource).y - _fromRest.originOf(lowest->source).y;
-    const double ownSize = glm::length(ownMost - ownLeast), otherSize = glm::length(otherMost - otherLeast);
-    constexpr double leastShare = 0.01; // of the size: less is no leg
-    if (own > leastShare * ownSize && other > leastShare * otherSize) return own / other;
+    const double ownSize = glm::length(ownMax - ownMin), otherSize = glm::length(otherMax - otherMin);
+    constexpr double minShare = 0.01; // of the size: less is no leg
+    if (own > minShare * ownSize && other > minShare * otherSize) return own / other;
     return ownSize > 0.0 && otherSize > 0.0 ? ownSize / otherSize : 1.0;
 }
 
@@ -251,8 +277,8 @@ void RigMatch::findBodies(const Skeleton& skeleton)
         const int parent = skeleton.joint(joint).parent;
         if (parent >= 0)
         {
-            bodyOf[joint] = bodyOf[static_cast<std::size_t>(parent)];
-            legOf[joint] = legOf[static_cast<std::size_t>(parent)];
+            bodyOf[joint] = bodyOf[parent];
+            legOf[joint] = legOf[parent];
         }
         if (match == _matches.end() || match->joint != joint) continue;
         const auto index = static_cast<std::size_t>(match++ - _matches.begin());
@@ -264,7 +290,7 @@ void RigMatch::findBodies(const Skeleton& skeleton)
         }
         else if (bodyOf[joint] >= 0 && legOf[joint] < 0)
             legOf[joint] = static_cast<int>(joint);
-        if (bodyOf[joint] >= 0) _bodies[static_cast<std::size_t>(bodyOf[joint])].parts.push_back(index);
+        if (bodyOf[joint] >= 0) _bodies[bodyOf[joint]].parts.push_back(index);
     }
     for (BodyMatch& body : _bodies)
         body.ratio = ratioOf(body, legOf);
@@ -275,10 +301,9 @@ void RigMatch::markBodies(const Skeleton& skeleton)
 {
     std::vector<double> ratios(skeleton.jointCount(), 0.0); // 0: not marked
     for (const BodyMatch& body : _bodies)
-        for (int joint = static_cast<int>(_matches[body.hips].joint);
-             joint >= 0 && ratios[static_cast<std::size_t>(joint)] == 0.0;
-             joint = skeleton.joint(static_cast<std::size_t>(joint)).parent)
-            ratios[static_cast<std::size_t>(joint)] = body.ratio;
+        for (int joint = static_cast<int>(_matches[body.hips].joint); joint >= 0 && ratios[joint] == 0.0;
+             joint = skeleton.joint(joint).parent)
+            ratios[joint] = body.ratio;
     for (JointMatch& match : _matches)
     {
         match.movesBody = ratios[match.joint] != 0.0;

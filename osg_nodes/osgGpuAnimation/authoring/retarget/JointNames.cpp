@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/animation/retarget/JointNames.h>
+#include <osgGpuAnimation/authoring/retarget/JointNames.h>
 
 #include <unordered_map>
 

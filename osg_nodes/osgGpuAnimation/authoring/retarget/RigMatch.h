@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/Clip.h>
 #include <osgGpuAnimation/animation/Skeleton.h>
+#include <osgGpuAnimation/authoring/RetargetOptions.h>
 
-#include <glm/ext/quaternion_double.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
 
@@ -21,18 +21,29 @@ struct Rig
     const std::vector<MorphWeights>& morphs;
 };
 
-/// The rest pose of a skeleton in model space.
-struct RestPlaces
+/// Where the joints of a skeleton are in one pose, in model space.
+struct JointPlaces
 {
-    explicit RestPlaces(const Skeleton& skeleton);
+    explicit JointPlaces(const Skeleton& skeleton); ///< at rest
+    /// key: the first joint's transform; those of the others follow, at every `step`th place.
+    JointPlaces(const Skeleton& skeleton, const JointTransform* key, std::size_t step);
 
     std::vector<glm::dmat4> jointToModel;
     std::vector<glm::dquat> rotations; ///< of the joints, in model space
-    double longest = 0.0;              ///< the length of the longest rest translation
 
     glm::dquat rotationOf(int joint) const; ///< the identity for -1
     glm::dmat3 linearOf(int joint) const;   ///< rotation and scale; the identity for -1
     glm::dvec3 originOf(std::size_t joint) const { return glm::dvec3(jointToModel[joint][3]); }
+    /// The joint's difference from rest; the identity for -1.
+    glm::dquat turnOf(int joint, const JointPlaces& rest) const
+    {
+        return rotationOf(joint) * glm::conjugate(rest.rotationOf(joint));
+    }
+    /// Where the joint would be if it kept its rest transform relative to an ancestor, -1 for the model.
+    glm::dvec3 restOriginOf(std::size_t joint, int ancestor, const JointPlaces& rest) const;
+
+private:
+    void add(const Joint& joint, const JointTransform& transform);
 };
 
 /// Comparisons of rest poses, apart from rounding.
@@ -42,9 +53,10 @@ namespace RestPose
 constexpr double tolerance = 1e-6; ///< radians, or a share
 
 glm::dquat unitOf(const glm::vec4& rotation);
+double longestJoint(const Skeleton& skeleton);           ///< the length of the longest rest translation
 bool areAlike(const glm::dquat& a, const glm::dquat& b); ///< the same rotation
 /// The distance of xyz is at most `most`.
-bool areAlike(const glm::vec4& a, const glm::vec4& b, double most);
+bool areAlike(const glm::vec4& a, const glm::vec4& b, double max);
 
 } // namespace RestPose
 
@@ -82,8 +94,8 @@ public:
     const std::vector<BodyMatch>& bodies() const { return _bodies; }
     const std::vector<int>& jointCounterparts() const { return _jointCounterparts; } ///< by joint of `to`; -1: none
     const std::vector<int>& morphCounterparts() const { return _morphCounterparts; } ///< by morph of `to`; -1: none
-    const RestPlaces& fromRest() const { return _fromRest; }
-    const RestPlaces& toRest() const { return _toRest; }
+    const JointPlaces& fromRest() const { return _fromRest; }
+    const JointPlaces& toRest() const { return _toRest; }
 
 private:
     RigMatch(const Rig& from, const Rig& to, const RetargetOptions& options);
@@ -94,7 +106,7 @@ private:
     void markBodies(const Skeleton& skeleton);
     double ratioOf(const BodyMatch& body, const std::vector<int>& legOf) const;
 
-    RestPlaces _fromRest, _toRest;
+    JointPlaces _fromRest, _toRest;
     std::vector<int> _jointCounterparts;
     std::vector<int> _morphCounterparts;
     std::vector<JointMatch> _matches;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/retarget/RigMatch.h>
+#include <osgGpuAnimation/animation/Clip.h>
+#include <osgGpuAnimation/authoring/retarget/RigMatch.h>
 
 #include <array>
 #include <memory>
@@ -19,12 +20,12 @@ struct JointMoves
 
     bool any() const { return translation || rotation || scale; }
     /// One per joint of the skeleton.
-    static std::vector<JointMoves> of(const RestPlaces& rest, const Skeleton& skeleton, const Clip& clip);
+    static std::vector<JointMoves> of(const Skeleton& skeleton, const Clip& clip);
     /// One per joint of the skeleton: true if any of the clips moves it.
-    static std::vector<bool> inAnyOf(const RestPlaces& rest, const Skeleton& skeleton, const std::vector<Clip>& clips);
+    static std::vector<bool> inAnyOf(const Skeleton& skeleton, const std::vector<Clip>& clips);
 };
 
-/// Turns clips of one skeleton into clips of another one, keyframe by keyframe, see AnimationSet::withClipsOf().
+/// Turns clips of one skeleton into clips of another one, keyframe by keyframe, see withClipsOf().
 ///
 /// Rotations keep their difference from the rest pose in model space. A joint has the local rotation q (r at rest); at
 /// rest its parent has the rotation P in model space. With G for its own rotation in model space, that difference is
@@ -68,7 +69,6 @@ private:
     };
 
     class Writer;
-    class KeyframePose;
     struct Soles;
 
     ClipRetargeter(const Rig& from, const Rig& to, RigMatch match);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/animation/retarget/ClipRetargeter.h>
+#include <osgGpuAnimation/authoring/retarget/ClipRetargeter.h>
 
 #include <osgGpuAnimation/math/Rotation.h>
 
@@ -48,36 +48,35 @@ bool moves(const Clip& clip, std::size_t joint, const JointTransform& rest, AreA
 
 } // namespace
 
-std::vector<JointMoves> JointMoves::of(const RestPlaces& rest, const Skeleton& skeleton, const Clip& clip)
+std::vector<JointMoves> JointMoves::of(const Skeleton& skeleton, const Clip& clip)
 {
-    const auto isNear = [](glm::vec4 JointTransform::*part, double most)
-    {
+    const auto isNear = [](glm::vec4 JointTransform::*part, double max) {
         return [=](const JointTransform& a, const JointTransform& b)
-        { return RestPose::areAlike(a.*part, b.*part, most); };
+        { return RestPose::areAlike(a.*part, b.*part, max); };
     };
     const auto isSameRotation = [](const JointTransform& a, const JointTransform& b)
     {
         if (b.rotation == zeros.rotation) return glm::length(glm::dvec4(a.rotation)) <= RestPose::tolerance;
         return RestPose::areAlike(RestPose::unitOf(a.rotation), RestPose::unitOf(b.rotation));
     };
+    const double nearby = RestPose::tolerance * RestPose::longestJoint(skeleton);
     std::vector<JointMoves> result;
     for (std::size_t joint = 0; joint < skeleton.jointCount(); ++joint)
     {
         const JointTransform& own = skeleton.joint(joint).rest;
-        result.push_back(
-            {moves(clip, joint, own, isNear(&JointTransform::translation, RestPose::tolerance * rest.longest)),
-             moves(clip, joint, own, isSameRotation),
-             moves(clip, joint, own, isNear(&JointTransform::scale, RestPose::tolerance))});
+        result.push_back({moves(clip, joint, own, isNear(&JointTransform::translation, nearby)),
+                          moves(clip, joint, own, isSameRotation),
+                          moves(clip, joint, own, isNear(&JointTransform::scale, RestPose::tolerance))});
     }
     return result;
 }
 
-std::vector<bool> JointMoves::inAnyOf(const RestPlaces& rest, const Skeleton& skeleton, const std::vector<Clip>& clips)
+std::vector<bool> JointMoves::inAnyOf(const Skeleton& skeleton, const std::vector<Clip>& clips)
 {
     std::vector<bool> isMoved(skeleton.jointCount(), false);
     for (const Clip& clip : clips)
     {
-        const std::vector<JointMoves> moves = of(rest, skeleton, clip);
+        const std::vector<JointMoves> moves = of(skeleton, clip);
         for (std::size_t joint = 0; joint < moves.size(); ++joint)
             isMoved[joint] = isMoved[joint] || moves[joint].any();
     }
@@ -106,7 +105,7 @@ ClipRetargeter::Factors ClipRetargeter::factorsOf(const JointMatch& match) const
         factors.copiesRotation = factors.copiesTranslation = factors.copiesScale = true;
         return factors;
     }
-    const RestPlaces &fromRest = _match.fromRest(), &toRest = _match.toRest();
+    const JointPlaces &fromRest = _match.fromRest(), &toRest = _match.toRest();
     const Joint& own = _to.skeleton.joint(match.joint);
     const Joint& other = _from.skeleton.joint(match.source);
     const glm::dquat ownParent = toRest.rotationOf(own.parent), otherParent = fromRest.rotationOf(other.parent);
@@ -127,9 +126,9 @@ ClipRetargeter::Factors ClipRetargeter::factorsOf(const JointMatch& match) const
         glm::length(change[0]) + glm::length(change[1]) + glm::length(change[2]) <= RestPose::tolerance;
     const bool hasSameFrame = RestPose::areAlike(ownParent, otherParent);
     factors.copiesRotation = hasSameFrame && RestPose::areAlike(ownRest, otherRest);
-    factors.copiesTranslation =
-        hasSameFrame && (!match.movesBody || isSameSize) &&
-        RestPose::areAlike(own.rest.translation, other.rest.translation, RestPose::tolerance * toRest.longest);
+    factors.copiesTranslation = hasSameFrame && (!match.movesBody || isSameSize) &&
+                                RestPose::areAlike(own.rest.translation, other.rest.translation,
+                                                   RestPose::tolerance * RestPose::longestJoint(_to.skeleton));
     factors.copiesScale =
         factors.copiesRotation && RestPose::areAlike(own.rest.scale, other.rest.scale, RestPose::tolerance);
     return factors;
@@ -146,8 +145,7 @@ public:
 
     void follow(const JointMatch& match, const Factors& factors, const JointMoves& moves);
     /// For a joint whose difference from rest depends on several joints of `from`.
-    void followFromAfar(std::size_t keyframe, const KeyframePose& pose, const JointMatch& match,
-                        const Factors& factors);
+    void followFromAfar(std::size_t keyframe, const JointPlaces& pose, const JointMatch& match, const Factors& factors);
     void makeLinear(const JointMatch& match); ///< after the last keyframe of followFromAfar()
 
 private:
@@ -189,65 +187,20 @@ void ClipRetargeter::Writer::follow(const JointMatch& match, const Factors& fact
         }
 }
 
-/// Where the joints of a skeleton are at one keyframe.
-class ClipRetargeter::KeyframePose
-{
-public:
-    /// key: the first joint's transform; those of the others follow, at every `step`th place.
-    KeyframePose(const Skeleton& skeleton, const RestPlaces& rest, const JointTransform* key, std::size_t step)
-        : _rest(rest)
-    {
-        for (std::size_t joint = 0; joint < skeleton.jointCount(); ++joint, key += step)
-        {
-            const glm::dmat4 local = key->toMatrix().toColumns();
-            const glm::dquat rotation = RestPose::unitOf(key->rotation);
-            const int parent = skeleton.joint(joint).parent;
-            const auto above = static_cast<std::size_t>(std::max(parent, 0));
-            _jointToModel.push_back(parent < 0 ? local : _jointToModel[above] * local);
-            _rotations.push_back(parent < 0 ? rotation : _rotations[above] * rotation);
-        }
-    }
-
-    /// The joint's difference from rest in model space; the identity for -1.
-    glm::dquat turnOf(int joint) const
-    {
-        if (joint < 0) return glm::dquat(1, 0, 0, 0);
-        return _rotations[static_cast<std::size_t>(joint)] * glm::conjugate(_rest.rotationOf(joint));
-    }
-    glm::dvec3 originOf(std::size_t joint) const { return glm::dvec3(_jointToModel[joint][3]); }
-    /// Rotation and scale of the joint; the identity for -1.
-    glm::dmat3 linearOf(int joint) const
-    {
-        return joint < 0 ? glm::dmat3(1.0) : glm::dmat3(_jointToModel[static_cast<std::size_t>(joint)]);
-    }
-    /// Where the joint would be if it kept its rest transform relative to an ancestor, -1 for the model.
-    glm::dvec3 restOriginOf(std::size_t joint, int ancestor) const
-    {
-        const glm::dvec3 origin = _rest.originOf(joint);
-        if (ancestor < 0) return origin;
-        const auto above = static_cast<std::size_t>(ancestor);
-        return glm::dvec3(_jointToModel[above] * (glm::inverse(_rest.jointToModel[above]) * glm::dvec4(origin, 1.0)));
-    }
-
-private:
-    const RestPlaces& _rest;
-    std::vector<glm::dmat4> _jointToModel;
-    std::vector<glm::dquat> _rotations;
-};
-
-void ClipRetargeter::Writer::followFromAfar(std::size_t keyframe, const KeyframePose& pose, const JointMatch& match,
+void ClipRetargeter::Writer::followFromAfar(std::size_t keyframe, const JointPlaces& pose, const JointMatch& match,
                                             const Factors& factors)
 {
-    const RestPlaces& toRest = _retargeter._match.toRest();
+    const JointPlaces &fromRest = _retargeter._match.fromRest(), &toRest = _retargeter._match.toRest();
     const Joint& own = _retargeter._to.skeleton.joint(match.joint);
     const glm::dquat parent = toRest.rotationOf(own.parent);
-    const glm::dquat back = glm::conjugate(pose.turnOf(match.above));
-    const glm::dquat turn = back * pose.turnOf(static_cast<int>(match.source));
+    const glm::dquat back = glm::conjugate(pose.turnOf(match.above, fromRest));
+    const glm::dquat turn = back * pose.turnOf(static_cast<int>(match.source), fromRest);
     JointTransform& out = at(keyframe, match.joint, 0);
     out.rotation = numbersOf(glm::conjugate(parent) * turn * parent * RestPose::unitOf(own.rest.rotation));
     out.translation = glm::vec4(glm::vec3(own.rest.translation), _perTrack == 3 ? 1.0f : 0.0f);
     if (!factors.movesBody && !match.isSameRig) return;
-    const glm::dvec3 way = back * (pose.originOf(match.source) - pose.restOriginOf(match.source, match.above));
+    const glm::dvec3 way =
+        back * (pose.originOf(match.source) - pose.restOriginOf(match.source, match.above, fromRest));
     const glm::dvec3 shift = glm::inverse(toRest.linearOf(own.parent)) * (match.ratio * way);
     write(glm::dvec3(own.rest.translation) + shift, out.translation);
 }
@@ -300,30 +253,30 @@ struct ClipRetargeter::Soles
     /// lowest joint.
     Soles(const RigMatch& match, const BodyMatch& body) : hips(match.joints()[body.hips].joint), ratio(body.ratio)
     {
-        constexpr double most = std::numeric_limits<double>::max();
-        double ownLeast = most, ownMost = -most, otherLeast = most, otherMost = -most;
+        constexpr double max = std::numeric_limits<double>::max();
+        double ownMin = max, ownMax = -max, otherMin = max, otherMax = -max;
         for (const std::size_t index : body.parts)
         {
             const JointMatch& joint = match.joints()[index];
             const double own = match.toRest().originOf(joint.joint).y,
                          other = match.fromRest().originOf(joint.source).y;
             parts.push_back({&joint, own, other});
-            ownLeast = std::min(ownLeast, own);
-            ownMost = std::max(ownMost, own);
-            otherLeast = std::min(otherLeast, other);
-            otherMost = std::max(otherMost, other);
+            ownMin = std::min(ownMin, own);
+            ownMax = std::max(ownMax, own);
+            otherMin = std::min(otherMin, other);
+            otherMax = std::max(otherMax, other);
         }
         constexpr double low = 0.15; // of the height: ankles and paws, not knees
         for (Part& part : parts)
         {
-            const bool stands = part.own - ownLeast <= low * (ownMost - ownLeast) &&
-                                part.other - otherLeast <= low * (otherMost - otherLeast);
-            if (!stands) part.own = ownLeast, part.other = otherLeast;
+            const bool stands =
+                part.own - ownMin <= low * (ownMax - ownMin) && part.other - otherMin <= low * (otherMax - otherMin);
+            if (!stands) part.own = ownMin, part.other = otherMin;
         }
     }
 
     /// By how much the body of `to` is too low.
-    double shortfall(const KeyframePose& from, const KeyframePose& to) const
+    double shortfall(const JointPlaces& from, const JointPlaces& to) const
     {
         double own = std::numeric_limits<double>::max(), other = own;
         for (const Part& part : parts)
@@ -345,8 +298,8 @@ void ClipRetargeter::keepOnGround(const Clip& clip, std::vector<JointTransform>&
     std::vector<glm::vec4> before(bodies.size(), glm::vec4(0.0f)); // the shifts at the keyframe before
     for (std::size_t k = 0; k < clip.keyframeCount(); ++k)
     {
-        const KeyframePose from(_from.skeleton, _match.fromRest(), clip.at(k, 0), perTrack);
-        const KeyframePose to(_to.skeleton, _match.toRest(), &data[k * stride], perTrack);
+        const JointPlaces from(_from.skeleton, clip.at(k, 0), perTrack);
+        const JointPlaces to(_to.skeleton, &data[k * stride], perTrack);
         for (std::size_t body = 0; body < bodies.size(); ++body)
         {
             const std::size_t hips = bodies[body].hips;
@@ -375,11 +328,10 @@ void ClipRetargeter::copyWeights(const Clip& clip, std::vector<JointTransform>& 
     {
         const int source = _match.morphCounterparts()[morph];
         if (source < 0) continue;
-        const std::size_t first = fromTracks[static_cast<std::size_t>(source)];
+        const std::size_t first = fromTracks[source];
         const std::size_t count = (toTracks[morph + 1] - toTracks[morph]) * perTrack;
         for (std::size_t k = 0; k < clip.keyframeCount(); ++k)
-            std::copy_n(clip.at(k, first), count,
-                        data.begin() + static_cast<std::ptrdiff_t>((k * _trackCount + toTracks[morph]) * perTrack));
+            std::copy_n(clip.at(k, first), count, data.begin() + ((k * _trackCount + toTracks[morph]) * perTrack));
     }
 }
 
@@ -406,7 +358,7 @@ std::vector<std::size_t> ClipRetargeter::movesAbove(const std::vector<JointMoves
     for (std::size_t joint = 0; joint < moves.size(); ++joint)
     {
         const int parent = _from.skeleton.joint(joint).parent;
-        counts.push_back((parent < 0 ? 0 : counts[static_cast<std::size_t>(parent)]) + moves[joint].any());
+        counts.push_back((parent < 0 ? 0 : counts[parent]) + moves[joint].any());
     }
     return counts;
 }
@@ -416,9 +368,9 @@ Result<Clip> ClipRetargeter::retarget(const Clip& clip) const
     Result<std::shared_ptr<const RootMotionCurve>> rootMotion = rootMotionOf(clip);
     if (!rootMotion) return rootMotion.error();
     std::vector<JointTransform> data = restKeyframes(clip);
-    const std::vector<JointMoves> moves = JointMoves::of(_match.fromRest(), _from.skeleton, clip);
+    const std::vector<JointMoves> moves = JointMoves::of(_from.skeleton, clip);
     const std::vector<std::size_t> counts = movesAbove(moves);
-    const auto countAt = [&](int joint) { return joint < 0 ? 0 : counts[static_cast<std::size_t>(joint)]; };
+    const auto countAt = [&](int joint) { return joint < 0 ? 0 : counts[joint]; };
     Writer writer(*this, clip, data);
     std::vector<std::size_t> afar; // indices of matches
     for (std::size_t match = 0; match < _factors.size(); ++match)
@@ -431,7 +383,7 @@ Result<Clip> ClipRetargeter::retarget(const Clip& clip) const
     }
     for (std::size_t k = 0; k < clip.keyframeCount() && !afar.empty(); ++k)
     {
-        const KeyframePose pose(_from.skeleton, _match.fromRest(), clip.at(k, 0), clip.transformsPerTrack());
+        const JointPlaces pose(_from.skeleton, clip.at(k, 0), clip.transformsPerTrack());
         for (const std::size_t match : afar)
             writer.followFromAfar(k, pose, _match.joints()[match], _factors[match]);
     }

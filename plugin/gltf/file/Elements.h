@@ -18,6 +18,6 @@ decltype(auto) elementOf(List&& list, int number)
 }
 
 template <typename List, typename Number>
-void elementOf(List&&, Number) = delete;
+void elementOf(List&&, Number) = delete; // no cast is needed
 
 } // namespace osgGpuAnimation::gltf

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "assimp/AssimpFile.h"
 #include "ModelReader.h"
-
-#include "cache/SeparateLoads.h"
-#include "cache/TypedWriters.h"
+#include "serializers/RegistryHooks.h"
 
 #include <osg/UserDataContainer>
 #include <osg/ValueObject>
@@ -62,8 +60,7 @@ protected:
     }
 };
 
-static SeparateLoads::Installation separateLoads;
-static TypedWriters::Installation typedWriters;
+static RegistryHooks registryHooks;
 
 } // namespace osgGpuAnimation
 

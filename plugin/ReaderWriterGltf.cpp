@@ -3,9 +3,7 @@
 #include "gltf/file/ModelBytes.h"
 #include "gltf/file/SavedFile.h"
 #include "ModelReader.h"
-
-#include "cache/SeparateLoads.h"
-#include "cache/TypedWriters.h"
+#include "serializers/RegistryHooks.h"
 
 #include <osg/Notify>
 #include <osgDB/FileNameUtils>
@@ -116,8 +114,7 @@ osgDB::ReaderWriter::WriteResult ReaderWriterGltf::write(const osg::Node& node, 
     }
 }
 
-static SeparateLoads::Installation separateLoads;
-static TypedWriters::Installation typedWriters;
+static RegistryHooks registryHooks;
 
 } // namespace osgGpuAnimation
 

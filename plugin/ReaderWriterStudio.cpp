@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "PseudoLoader.h"
 
+#include "gltf/file/ImportOptions.h"
 #include "gltf/file/Report.h"
-#include "gltf/ImportOptions.h"
 
 #include <osgGpuAnimation/nodes/studio/Studio.h>
 #include <osgGpuAnimation/nodes/viewing/RaisedHome.h>

@@ -4,7 +4,6 @@
 #include "assimp/MeshConversion.h"
 
 #include <map>
-#include <vector>
 
 struct aiScene;
 

@@ -17,7 +17,6 @@
 #include <chrono>
 #include <filesystem>
 #include <set>
-#include <string>
 #include <system_error>
 #include <vector>
 

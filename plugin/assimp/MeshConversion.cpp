@@ -15,7 +15,7 @@ namespace
 
 using nlohmann::json;
 
-constexpr std::size_t mostJoints = 65535; // of a skin, by JOINTS_0
+constexpr std::size_t maxJoints = 65535; // of a skin, by JOINTS_0
 
 std::vector<float> components(const aiVector3D* vectors, std::size_t count)
 {
@@ -192,7 +192,7 @@ MeshWriter::Influences MeshWriter::influences(const aiMesh& mesh, std::size_t no
     {
         const aiBone& bone = *mesh.mBones[i];
         const auto found = _nodes.find(bone.mName.C_Str());
-        if (found == _nodes.end() || joints.size() + 1 >= mostJoints)
+        if (found == _nodes.end() || joints.size() + 1 >= maxJoints)
         {
             _report.warn("mesh " + gltf::quoted(std::string(mesh.mName.C_Str())) + ": bone " +
                          gltf::quoted(std::string(bone.mName.C_Str())) +
@@ -206,7 +206,7 @@ MeshWriter::Influences MeshWriter::influences(const aiMesh& mesh, std::size_t no
             if (weight.mVertexId >= count || taken[weight.mVertexId] == 4 || !(weight.mWeight > 0.0f) ||
                 !std::isfinite(weight.mWeight))
                 continue;
-            const std::size_t place = 4 * std::size_t(weight.mVertexId) + taken[weight.mVertexId]++;
+            const std::size_t place = 4 * static_cast<std::size_t>(weight.mVertexId) + taken[weight.mVertexId]++;
             made.joints[place] = joint;
             made.weights[place] = weight.mWeight;
         }

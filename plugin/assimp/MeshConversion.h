@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "gltf/export/GlbWriter.h"
 #include "gltf/file/Report.h"
-#include "gltf/write/GlbWriter.h"
 
 #include <cstddef>
 #include <map>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "assimp/Pictures.h"
 
+#include "gltf/export/PictureWriter.h"
+
 #include <osg/Image>
 #include <osgDB/FileNameUtils>
 #include <osgDB/Registry>
@@ -18,8 +20,8 @@ namespace osgGpuAnimation::assimp
 namespace
 {
 
-constexpr std::size_t mostBytes = std::size_t(256) << 20; ///< of an encoded picture
-constexpr std::uint64_t mostPixels = std::uint64_t(1) << 26;
+constexpr std::size_t maxBytes = std::size_t(256) << 20; ///< of an encoded picture
+constexpr std::uint64_t maxPixels = std::uint64_t(1) << 26;
 
 bool begins(const std::string& bytes, std::string_view magic)
 {
@@ -36,7 +38,7 @@ std::uint64_t numberAt(const std::string& bytes, std::size_t offset, std::size_t
 {
     std::uint64_t number = 0;
     for (std::size_t i = 0; i < length && offset + i < bytes.size(); ++i)
-        number |= std::uint64_t(static_cast<unsigned char>(bytes[offset + i])) << (8 * i);
+        number |= static_cast<std::uint64_t>(static_cast<unsigned char>(bytes[offset + i])) << (8 * i);
     return number;
 }
 
@@ -48,34 +50,25 @@ std::uint64_t pixelsOf(const std::string& bytes, const std::string& extension)
     return magnitude(numberAt(bytes, 18, 4)) * magnitude(numberAt(bytes, 22, 4));
 }
 
-Result<std::string> pngOf(const osg::Image& image)
-{
-    osgDB::ReaderWriter* const png = osgDB::Registry::instance()->getReaderWriterForExtension("png");
-    std::ostringstream stream;
-    if (!png || !png->writeImage(image, stream).success()) return Error{"cannot be turned into a PNG"};
-    return stream.str();
-}
-
 /// A TGA or BMP as PNG.
 Result<std::string> converted(const std::string& bytes, const std::string& extension)
 {
     if (extension != "tga" && extension != "bmp")
         return Error{"is not PNG, JPEG, TGA or BMP; convert it to PNG beside the file"};
-    if (pixelsOf(bytes, extension) > mostPixels)
-        return Error{"has more than " + std::to_string(mostPixels) + " pixels"};
+    if (pixelsOf(bytes, extension) > maxPixels) return Error{"has more than " + std::to_string(maxPixels) + " pixels"};
     osgDB::ReaderWriter* const reader = osgDB::Registry::instance()->getReaderWriterForExtension(extension);
     std::istringstream stream(bytes);
     osgDB::ReaderWriter::ReadResult read;
     if (reader) read = reader->readImage(stream);
     if (!read.validImage()) return Error{"OSG cannot read it"};
-    return pngOf(*read.getImage());
+    return gltf::encodePng(*read.getImage());
 }
 
 /// Pixels as Assimp has them: mWidth x mHeight of B, G, R, A.
 Result<std::string> pngOfPixels(const aiTexture& texture)
 {
-    if (std::uint64_t(texture.mWidth) * texture.mHeight > mostPixels)
-        return Error{"has more than " + std::to_string(mostPixels) + " pixels"};
+    if (static_cast<std::uint64_t>(texture.mWidth) * texture.mHeight > maxPixels)
+        return Error{"has more than " + std::to_string(maxPixels) + " pixels"};
     osg::ref_ptr<osg::Image> image = new osg::Image;
     image->allocateImage(static_cast<int>(texture.mWidth), static_cast<int>(texture.mHeight), 1, GL_RGBA,
                          GL_UNSIGNED_BYTE);
@@ -84,28 +77,12 @@ Result<std::string> pngOfPixels(const aiTexture& texture)
         unsigned char* to = image->data(0, texture.mHeight - 1 - row); // OSG's rows go up
         for (unsigned int column = 0; column < texture.mWidth; ++column)
         {
-            const aiTexel& texel = texture.pcData[std::size_t(row) * texture.mWidth + column];
+            const aiTexel& texel = texture.pcData[static_cast<std::size_t>(row) * texture.mWidth + column];
             for (const unsigned char channel : {texel.r, texel.g, texel.b, texel.a})
                 *to++ = channel;
         }
     }
-    return pngOf(*image);
-}
-
-/// The relative URI of a path.
-std::string uriOf(const std::string& path)
-{
-    constexpr const char* digits = "0123456789ABCDEF";
-    std::string uri;
-    for (const char letter : path)
-    {
-        const auto byte = static_cast<unsigned char>(letter);
-        if (std::isalnum(byte) || std::string_view("/._-~").find(letter) != std::string_view::npos)
-            uri += letter;
-        else
-            (uri += '%').append({digits[byte >> 4], digits[byte & 15]});
-    }
-    return uri;
+    return gltf::encodePng(*image);
 }
 
 } // namespace
@@ -156,9 +133,9 @@ Result<std::string> Pictures::fileBytes(std::string path) const
     // Exporters write paths of the author's machine.
     for (const std::string& place : {path, name, "textures/" + name, _modelName + ".fbm/" + name})
     {
-        const Result<gltf::RegularFile> file = _folder.open(uriOf(place));
+        const Result<gltf::RegularFile> file = _folder.openPath(place);
         if (!file) continue;
-        if (file.value().size() > mostBytes) return Error{"has more than " + std::to_string(mostBytes) + " bytes"};
+        if (file.value().size() > maxBytes) return Error{"has more than " + std::to_string(maxBytes) + " bytes"};
         return file.value().readWhole();
     }
     return Error{"is neither in the file nor beside it"};

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "gltf/export/GlbWriter.h"
 #include "gltf/file/Report.h"
 #include "gltf/file/Uri.h"
-#include "gltf/write/GlbWriter.h"
 
 #include <cstddef>
 #include <map>

@@ -4,7 +4,7 @@
 #include "assimp/AnimationConversion.h"
 #include "assimp/MaterialConversion.h"
 #include "assimp/MeshConversion.h"
-#include "gltf/write/GlbWriter.h"
+#include "gltf/export/GlbWriter.h"
 
 #include <assimp/scene.h>
 
@@ -80,7 +80,7 @@ private:
         std::size_t depth;
     };
 
-    std::optional<Error> addNodes(std::size_t mostDepth);
+    std::optional<Error> addNodes(std::size_t maxDepth);
     void addMeshes(std::size_t number, MeshWriter& meshes);
     std::size_t addChild(std::size_t parent, const std::string& name);
     json transformOf(const aiNode& node);
@@ -119,7 +119,7 @@ std::optional<Error> SceneWriter::write(const std::string& modelFile, const gltf
     return std::nullopt;
 }
 
-std::optional<Error> SceneWriter::addNodes(std::size_t mostDepth)
+std::optional<Error> SceneWriter::addNodes(std::size_t maxDepth)
 {
     json& nodes = _writer.document["nodes"] = json::array();
     std::vector<Node> open{{_scene.mRootNode, 0, 1}};
@@ -127,7 +127,7 @@ std::optional<Error> SceneWriter::addNodes(std::size_t mostDepth)
     {
         const Node next = open.back();
         open.pop_back();
-        if (next.depth > mostDepth) return Error{"the hierarchy of nodes is deeper than " + std::to_string(mostDepth)};
+        if (next.depth > maxDepth) return Error{"the hierarchy of nodes is deeper than " + std::to_string(maxDepth)};
         const std::size_t number = gltf::append(nodes, {{"name", next.node->mName.C_Str()}});
         if (number > 0) nodes[next.parent]["children"].push_back(number);
         _nodes.push_back(next);

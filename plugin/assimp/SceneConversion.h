@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "gltf/file/ImportOptions.h"
 #include "gltf/file/Report.h"
-#include "gltf/ImportOptions.h"
 
 #include <osgGpuAnimation/math/Result.h>
 

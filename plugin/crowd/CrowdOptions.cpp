@@ -2,7 +2,6 @@
 #include "crowd/CrowdOptions.h"
 
 #include "gltf/file/Report.h"
-#include "gltf/ImportOptions.h"
 
 #include <osgGpuAnimation/frame/stage/LodSelection.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "gltf/ImportOptions.h"
+#include "gltf/file/ImportOptions.h"
 
 #include <osgGpuAnimation/math/Result.h>
 

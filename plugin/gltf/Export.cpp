@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/Export.h"
 
-#include "gltf/write/CharacterReach.h"
-#include "gltf/write/CharacterWriter.h"
-#include "gltf/write/ClipWriter.h"
-#include "gltf/write/GeometryWriter.h"
-#include "gltf/write/GlbWriter.h"
-#include "gltf/write/NodeWriter.h"
+#include "gltf/export/CharacterReach.h"
+#include "gltf/export/CharacterWriter.h"
+#include "gltf/export/ClipWriter.h"
+#include "gltf/export/GeometryWriter.h"
+#include "gltf/export/GlbWriter.h"
+#include "gltf/export/NodeWriter.h"
+#include "gltf/file/Elements.h"
 
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/looks/shading/PunctualLight.h>
@@ -55,8 +56,7 @@ const std::shared_ptr<const AnimationSet>& setOf(const AnimatedCrowd& crowd)
     return crowd.getSharedAnimationSet();
 }
 
-/// Where the traversal is.
-struct Whereabouts
+struct TraversalState
 {
     NodePlace* place = nullptr; ///< null: the scene
     osg::Matrixd toPlace;       ///< not yet in a place
@@ -91,16 +91,16 @@ class SceneExporter
 {
 public:
     SceneExporter(const osg::Node& scene, Report& report)
-        : _variants(variantsBelow(scene)), _report(report), _nodes(_writer, report),
-          _geometries(_writer, _variants, report), _characters(_writer, _nodes, _geometries), _clips(_writer, report)
+        : _report(report), _nodes(_writer, report), _geometries(_writer, _variants, report),
+          _characters(_writer, _nodes, _geometries), _clips(_writer, report)
     {
         json first = json::object();
         if (!scene.getName().empty()) first["name"] = scene.getName();
         _writer.document["scene"] = 0;
         _writer.document["scenes"].push_back(std::move(first));
-        Whereabouts top;
+        TraversalState top;
         top.toPlace.set(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1); // from +Z up to +Y up, exactly
-        _open.push_back({{&scene, false}, std::make_shared<const Whereabouts>(top)});
+        _open.push_back({{&scene, false}, std::make_shared<const TraversalState>(top)});
         while (!_open.empty() && !_guard.isBeyondMaxPaths())
         {
             const OpenNode next = std::move(_open.back());
@@ -117,32 +117,30 @@ public:
     Result<std::string> glb() const;
 
 private:
-    static std::vector<std::string> variantsBelow(const osg::Node& scene);
-
     /// A node that visit() shall have next. Scenes may be deeper than the call stack.
     struct OpenNode
     {
         Child child;
-        std::shared_ptr<const Whereabouts> above;
+        std::shared_ptr<const TraversalState> above;
     };
 
     bool mayVisit(const osg::Node& node, std::size_t depth);
-    void visit(const Child& child, const Whereabouts& above);
-    void visitChildren(const osg::Node& node, const Whereabouts& at);
-    void enter(const osg::Transform& transform, Whereabouts& at);
-    void visitAttachment(const JointAttachment& attachment, const Whereabouts& above);
+    void visit(const Child& child, const TraversalState& above);
+    void visitChildren(const osg::Node& node, const TraversalState& at);
+    void enter(const osg::Transform& transform, TraversalState& at);
+    void visitAttachment(const JointAttachment& attachment, const TraversalState& above);
     template <typename Character>
-    void visitCharacter(const Character& character, const osg::Matrixd& toAbove, const Whereabouts& at);
-    std::vector<CharacterMesh> meshesOf(const osg::Node& character, const Whereabouts& at) const;
-    void addGeometry(const osg::Geometry& geometry, const Whereabouts& at);
-    void addLight(const osg::LightSource& source, const Whereabouts& at);
-    void addCamera(const osg::CameraView& view, const Whereabouts& at);
-    NodePlace* placeAt(const Whereabouts& at);
+    void visitCharacter(const Character& character, const osg::Matrixd& toAbove, const TraversalState& at);
+    std::vector<CharacterMesh> meshesOf(const osg::Node& character, const TraversalState& at) const;
+    void addGeometry(const osg::Geometry& geometry, const TraversalState& at);
+    void addLight(const osg::LightSource& source, const TraversalState& at);
+    void addCamera(const osg::CameraView& view, const TraversalState& at);
+    NodePlace* placeAt(const TraversalState& at);
     void writeGeometries();
     void writeVariants();
 
     GlbWriter _writer;
-    const std::vector<std::string> _variants;
+    std::vector<std::string> _variants; ///< of the scene so far
     Report& _report;
     NodeWriter _nodes;
     GeometryWriter _geometries;
@@ -199,25 +197,7 @@ std::vector<Child> childrenOf(const osg::Node& node)
     return children;
 }
 
-std::vector<std::string> SceneExporter::variantsBelow(const osg::Node& scene)
-{
-    std::vector<std::string> names;
-    std::vector<const osg::Node*> open{&scene};
-    std::unordered_set<const osg::Node*> known{&scene};
-    while (!open.empty())
-    {
-        const osg::Node& node = *open.back();
-        open.pop_back();
-        for (const std::string& name : variantNamesOf(node))
-            if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-        const std::vector<Child> children = childrenOf(node);
-        for (auto child = children.rbegin(); child != children.rend(); ++child)
-            if (known.insert(child->node).second) open.push_back(child->node);
-    }
-    return names;
-}
-
-NodePlace* SceneExporter::placeAt(const Whereabouts& at)
+NodePlace* SceneExporter::placeAt(const TraversalState& at)
 {
     if (at.toPlace.isIdentity()) return at.place;
     std::array<double, 16> numbers;
@@ -227,7 +207,7 @@ NodePlace* SceneExporter::placeAt(const Whereabouts& at)
     return known;
 }
 
-void SceneExporter::enter(const osg::Transform& transform, Whereabouts& at)
+void SceneExporter::enter(const osg::Transform& transform, TraversalState& at)
 {
     osg::Matrix matrix;
     transform.computeLocalToWorldMatrix(matrix, nullptr);
@@ -253,21 +233,23 @@ bool SceneExporter::mayVisit(const osg::Node& node, std::size_t depth)
     return false;
 }
 
-void SceneExporter::visitChildren(const osg::Node& node, const Whereabouts& at)
+void SceneExporter::visitChildren(const osg::Node& node, const TraversalState& at)
 {
     const std::vector<Child> children = childrenOf(node);
     if (children.empty() || !mayVisit(node, at.depth)) return;
-    const auto below = std::make_shared<Whereabouts>(at);
+    const auto below = std::make_shared<TraversalState>(at);
     ++below->depth;
     for (auto child = children.rbegin(); child != children.rend(); ++child)
         _open.push_back({*child, below});
 }
 
 /// above: of the node above.
-void SceneExporter::visit(const Child& child, const Whereabouts& above)
+void SceneExporter::visit(const Child& child, const TraversalState& above)
 {
     const osg::Node& node = *child.node;
-    Whereabouts at = above;
+    for (const std::string& name : variantNamesOf(node)) // before the meshes below
+        if (std::find(_variants.begin(), _variants.end(), name) == _variants.end()) _variants.push_back(name);
+    TraversalState at = above;
     at.state = stateBelow(above.state, node);
     at.isHidden = above.isHidden || child.isHidden;
     if (const auto* const character = dynamic_cast<const AnimatedCharacter*>(&node))
@@ -308,9 +290,9 @@ void SceneExporter::visit(const Child& child, const Whereabouts& above)
     visitChildren(node, at);
 }
 
-void SceneExporter::visitAttachment(const JointAttachment& attachment, const Whereabouts& above)
+void SceneExporter::visitAttachment(const JointAttachment& attachment, const TraversalState& above)
 {
-    Whereabouts at = above;
+    TraversalState at = above;
     const std::string& name = attachment.getJointName();
     const WrittenCharacter* const character = at.character;
     const int joint = !character     ? -1
@@ -319,7 +301,7 @@ void SceneExporter::visitAttachment(const JointAttachment& attachment, const Whe
     if (joint < 0 || static_cast<std::size_t>(joint) >= character->nodeOfJoint.size())
         return _report.warn("attachment " + quoted(attachment.getName().empty() ? name : attachment.getName()) +
                             ": there is no such joint; left out");
-    at.place = &_nodes.placeOf(character->nodeOfJoint[static_cast<std::size_t>(joint)]);
+    at.place = &_nodes.placeOf(elementOf(character->nodeOfJoint, joint));
     at.toPlace = attachment.getOffset();
     visitChildren(attachment, at);
 }
@@ -329,13 +311,13 @@ std::size_t depthOf(const Skeleton& skeleton)
 {
     std::vector<std::size_t> depths;
     for (const Joint& joint : skeleton.joints()) // parents first
-        depths.push_back(1 + (joint.parent < 0 ? 0 : depths[static_cast<std::size_t>(joint.parent)]));
+        depths.push_back(1 + (joint.parent < 0 ? 0 : elementOf(depths, joint.parent)));
     return depths.empty() ? 0 : *std::max_element(depths.begin(), depths.end());
 }
 
 /// toAbove: from the axes of the character's file to the node above.
 template <typename Character>
-void SceneExporter::visitCharacter(const Character& character, const osg::Matrixd& toAbove, const Whereabouts& at)
+void SceneExporter::visitCharacter(const Character& character, const osg::Matrixd& toAbove, const TraversalState& at)
 {
     const std::size_t depth = (at.place ? at.place->depth : 0) + 2 + depthOf(setOf(character)->skeleton());
     if (depth > NodeWriter::maxDepth)
@@ -360,14 +342,14 @@ void SceneExporter::visitCharacter(const Character& character, const osg::Matrix
     };
     meshes.erase(std::remove_if(meshes.begin(), meshes.end(), isFar), meshes.end());
     _written.push_back(_characters.write(reach.set(), meshes, toPlace, character.getName(), at.place));
-    Whereabouts below = at;
+    TraversalState below = at;
     below.character = &_written.back();
     enter(character, below);
     visitChildren(character, below);
 }
 
 /// The meshes below a character; those below transforms are others'. at: of the character.
-std::vector<CharacterMesh> SceneExporter::meshesOf(const osg::Node& character, const Whereabouts& at) const
+std::vector<CharacterMesh> SceneExporter::meshesOf(const osg::Node& character, const TraversalState& at) const
 {
     struct Open
     {
@@ -401,29 +383,29 @@ std::vector<CharacterMesh> SceneExporter::meshesOf(const osg::Node& character, c
     return meshes;
 }
 
-void SceneExporter::addGeometry(const osg::Geometry& geometry, const Whereabouts& at)
+void SceneExporter::addGeometry(const osg::Geometry& geometry, const TraversalState& at)
 {
     _plain.push_back({placeAt(at), at.state, &geometry, at.isHidden});
 }
 
-void SceneExporter::addLight(const osg::LightSource& source, const Whereabouts& at)
+void SceneExporter::addLight(const osg::LightSource& source, const TraversalState& at)
 {
     const auto* const light = dynamic_cast<const PunctualLight*>(source.getLight());
     if (!light) return _report.warn("light " + quoted(source.getName()) + ": it is no PunctualLight; left out");
     if (at.isHidden) return _report.warn("light " + quoted(source.getName()) + ": it is hidden; left out");
     // See PunctualLight::setIntensity(). The base class sets any numbers.
     const osg::Vec4 diffuse = light->getDiffuse();
-    const float most = std::max({diffuse.x(), diffuse.y(), diffuse.z()});
-    const double outer = std::min(osg::PI_2, osg::DegreesToRadians(double(light->getSpotCutoff())));
+    const float max = std::max({diffuse.x(), diffuse.y(), diffuse.z()});
+    const double outer = std::min(osg::PI_2, osg::DegreesToRadians(static_cast<double>(light->getSpotCutoff())));
     const PunctualLight::Kind kind = light->getKind();
     const auto isIntensity = [](float number)
     { return number >= 0.0f && number * osg::PI <= std::numeric_limits<float>::max(); };
     if (!isIntensity(diffuse.x()) || !isIntensity(diffuse.y()) || !isIntensity(diffuse.z()) ||
         (kind == PunctualLight::Kind::Spot && !(outer > 0.0)))
         return _report.warn("light " + quoted(source.getName()) + ": its colour or cone is out of range; left out");
-    json made{{"intensity", most * osg::PI}};
+    json made{{"intensity", max * osg::PI}};
     if (!source.getName().empty()) made["name"] = source.getName();
-    if (most > 0.0f) made["color"] = {diffuse.x() / most, diffuse.y() / most, diffuse.z() / most};
+    if (max > 0.0f) made["color"] = {diffuse.x() / max, diffuse.y() / max, diffuse.z() / max};
     if (light->getRange() > 0.0f) made["range"] = light->getRange();
     made["type"] = kind == PunctualLight::Kind::Directional ? "directional"
                    : kind == PunctualLight::Kind::Spot      ? "spot"
@@ -437,11 +419,11 @@ void SceneExporter::addLight(const osg::LightSource& source, const Whereabouts& 
     _nodes.at(node)["extensions"][extension]["light"] = number;
 }
 
-void SceneExporter::addCamera(const osg::CameraView& view, const Whereabouts& at)
+void SceneExporter::addCamera(const osg::CameraView& view, const TraversalState& at)
 {
     osg::Matrix matrix;
     view.computeLocalToWorldMatrix(matrix, nullptr);
-    Whereabouts below = at;
+    TraversalState below = at;
     below.toPlace = matrix * below.toPlace;
     // A viewer finds the planes itself; files must have some.
     constexpr double nearest = 0.01, farthest = 10000.0;

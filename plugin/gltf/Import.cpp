@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/Import.h"
 
+#include "gltf/data/LoadDocument.h"
 #include "gltf/data/MaterialVariants.h"
-#include "gltf/document/LoadDocument.h"
+#include "gltf/file/Elements.h"
 #include "gltf/file/ProgressLine.h"
-#include "gltf/file/Report.h"
-#include "gltf/scene/ClipFiles.h"
-#include "gltf/scene/Clips.h"
-#include "gltf/scene/Drawables.h"
-#include "gltf/scene/Joints.h"
+#include "gltf/import/ClipFiles.h"
+#include "gltf/import/Clips.h"
+#include "gltf/import/Drawables.h"
+#include "gltf/import/Joints.h"
 
 #include <osgGpuAnimation/animation/bounds/TransformBound.h>
 #include <osgGpuAnimation/mesh/geometry/MaterialVariants.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 #include <osgGpuAnimation/nodes/CompactedCharacter.h>
+#include <osgGpuAnimation/nodes/viewing/StartView.h>
 
 #include <osgDB/FileNameUtils>
 
@@ -28,7 +29,7 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
-constexpr std::size_t mostPaletteEntries = 65536; // a vertex names entries by 16 bits
+constexpr std::size_t maxPaletteEntries = 65536; // a vertex names entries by 16 bits
 
 std::string listed(const std::vector<std::string>& names)
 {
@@ -64,7 +65,7 @@ double nextRandomShare(std::uint32_t seed)
     static std::mutex mutex;
     static std::map<std::uint32_t, std::uint64_t> states;
     const std::lock_guard<std::mutex> lock(mutex);
-    std::uint64_t& state = states.try_emplace(seed, std::uint64_t(seed) << 32).first->second;
+    std::uint64_t& state = states.try_emplace(seed, static_cast<std::uint64_t>(seed) << 32).first->second;
     std::uint64_t bits = state += 0x9E3779B97F4A7C15u;
     bits = (bits ^ bits >> 30) * 0xBF58476D1CE4E5B9u;
     bits = (bits ^ bits >> 27) * 0x94D049BB133111EBu;
@@ -142,9 +143,9 @@ Result<void> Importer::makeSet(const NodeTree& tree, const Joints& joints, const
             if (!TransformBound::of(matrix.toColumns()).fits())
                 return Error{elementName("skins", skin) + ".inverseBindMatrices: one takes its joint " +
                              outOfRangeText()};
-    if (set.value()->paletteSize() > mostPaletteEntries)
+    if (set.value()->paletteSize() > maxPaletteEntries)
         return Error{"skins and joints: " + std::to_string(set.value()->paletteSize()) +
-                     " palette entries are needed, at most " + std::to_string(mostPaletteEntries) + " are possible"};
+                     " palette entries are needed, at most " + std::to_string(maxPaletteEntries) + " are possible"};
     _result.set = set.value();
     addClipFiles();
     return {};
@@ -170,8 +171,7 @@ void Importer::makeGraph(const NodeTree& tree, const Joints& joints, const Morph
 {
     // glTF is +Y up, OSG is +Z up. No other code of the import converts between them. The numbers are exact: the sine
     // and cosine of a rotation by pi / 2 are not.
-    const std::string sceneName =
-        tree.scene >= 0 ? _model.scenes[static_cast<std::size_t>(tree.scene)].name : std::string();
+    const std::string sceneName = tree.scene >= 0 ? elementOf(_model.scenes, tree.scene).name : std::string();
     if (!_options.noRotation) _result.fileToNode.set(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
     osg::ref_ptr<osg::MatrixTransform> still = new osg::MatrixTransform(_result.fileToNode);
     _result.root = still;
@@ -194,7 +194,8 @@ void Importer::makeGraph(const NodeTree& tree, const Joints& joints, const Morph
     NodePlaces places(_model, tree, joints, _result.character,
                       buildSceneGraph(parts, *still, _result.character, _result.primitives));
     if (_result.character && still->getNumChildren() > 0) _result.root->addChild(still);
-    addCameras(_result.cameras, places);
+    for (const ImportedCamera& camera : _result.cameras)
+        places.add(static_cast<std::size_t>(camera.node), camera.view);
     nameVariants(variant);
     if (_result.lights.empty()) return;
     const osg::Matrixd toFile = osg::Matrixd::inverse(_result.fileToNode);
@@ -207,16 +208,14 @@ void Importer::nameVariants(int variant)
     if (!_result.character || _result.variantNames.empty()) return;
     setVariantNames(*_result.character, _result.variantNames);
     if (variant >= 0)
-        static_cast<void>(
-            _result.character->getMeshes().setVariant(_result.variantNames[static_cast<std::size_t>(variant)]));
+        static_cast<void>(_result.character->getMeshes().setVariant(elementOf(_result.variantNames, variant)));
 }
 
 /// By node: it stands still and has a light or a camera.
 std::vector<bool> Importer::nodesThatCarry(const Joints& joints) const
 {
     std::vector<bool> carries(_model.nodes.size(), false);
-    const auto add = [&](int node)
-    { carries[static_cast<std::size_t>(node)] = !joints.moves[static_cast<std::size_t>(node)]; };
+    const auto add = [&](int node) { elementOf(carries, node) = !elementOf(joints.moves, node); };
     for (const ImportedLight& light : _result.lights)
         add(light.node);
     for (const ImportedCamera& camera : _result.cameras)
@@ -230,7 +229,7 @@ Result<void> Importer::chooseStart()
     const Result<std::size_t> chosen = chooseCamera(_result.cameras, *_options.camera);
     if (!chosen) return chosen.error();
     _result.startCamera = _result.cameras[chosen.value()].view;
-    startWith(_result.cameras[chosen.value()], *_result.root);
+    _result.root->addEventCallback(new StartView(_result.startCamera->getName()));
     return {};
 }
 
@@ -270,18 +269,15 @@ Result<void> Importer::run()
     const Result<Joints> joints = buildJoints(_model, tree.value(), moved);
     if (!joints) return joints.error();
     const Morphs morphs = readMorphs(_model);
-    const Result<void> made = makeSet(tree.value(), joints.value(), morphs);
-    if (!made) return made.error();
+    if (const Result<void> made = makeSet(tree.value(), joints.value(), morphs); !made) return made;
     _result.variantNames = variantNames(_model);
     const Result<int> variant = chooseVariant(_result.variantNames, _options);
     if (!variant) return variant.error();
     const Result<int> clip = chooseClip(_result, _options);
     if (!clip) return clip.error();
     makeGraph(tree.value(), joints.value(), morphs, variant.value());
-    const Result<void> started = chooseStart();
-    if (!started) return started.error();
-    const Result<void> finished = finishClips();
-    if (!finished) return finished.error();
+    if (const Result<void> started = chooseStart(); !started) return started;
+    if (const Result<void> finished = finishClips(); !finished) return finished;
     describeFile(tree.value());
     return play(clip.value());
 }

@@ -2,11 +2,11 @@
 #pragma once
 
 #include "gltf/data/MaterialDescription.h"
+#include "gltf/file/ImportOptions.h"
 #include "gltf/file/Report.h"
-#include "gltf/ImportOptions.h"
-#include "gltf/scene/SceneGraph.h"
-#include "gltf/view/Cameras.h"
-#include "gltf/view/Lights.h"
+#include "gltf/import/Cameras.h"
+#include "gltf/import/Lights.h"
+#include "gltf/import/SceneGraph.h"
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>

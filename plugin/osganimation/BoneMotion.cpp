@@ -18,22 +18,6 @@ namespace osgGpuAnimation::osganimation
 namespace
 {
 
-double largestNumber(const osg::Matrixd& matrix)
-{
-    double largest = 0.0;
-    for (int i = 0; i < 16; ++i)
-        largest = std::max(largest, std::abs(matrix.ptr()[i]));
-    return largest;
-}
-
-double largestDifference(const osg::Matrixd& a, const osg::Matrixd& b)
-{
-    double largest = 0.0;
-    for (int i = 0; i < 16; ++i)
-        largest = std::max(largest, std::abs(a.ptr()[i] - b.ptr()[i]));
-    return largest;
-}
-
 osg::Matrixd matrixOf(const JointTransform& transform)
 {
     return toOsg(transform.toMatrix());
@@ -61,7 +45,7 @@ JointTransform transformOf(const osg::Matrixd& matrix)
 
 bool hasNoShear(const osg::Matrixd& matrix)
 {
-    return largestDifference(matrixOf(transformOf(matrix)), matrix) < 1e-4 * largestNumber(matrix);
+    return BoneMotion::difference(matrixOf(transformOf(matrix)), matrix) < 1e-4 * BoneMotion::size(matrix);
 }
 
 BoneMotion::BoneMotion(const osgAnimation::Bone& bone, const osgAnimation::UpdateBone* update,
@@ -81,12 +65,15 @@ BoneMotion::BoneMotion(const osgAnimation::Bone& bone, const osgAnimation::Updat
 
 double BoneMotion::difference(const osg::Matrixd& a, const osg::Matrixd& b)
 {
-    return largestDifference(a, b);
+    double max = 0.0;
+    for (int i = 0; i < 16; ++i)
+        max = std::max(max, std::abs(a.ptr()[i] - b.ptr()[i]));
+    return max;
 }
 
 double BoneMotion::size(const osg::Matrixd& matrix)
 {
-    return largestNumber(matrix);
+    return difference(matrix, osg::Matrixd(0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0));
 }
 
 osg::Matrixd BoneMotion::between(const osg::Matrixd& from, const osg::Matrixd& to, float share)

@@ -25,7 +25,7 @@ template <class Curve, class Value>
 void addKeysBetween(Curve& curve, const CurveKey<Value>& from, const CurveKey<Value>& to, int depth,
                     std::vector<CurveKey<Value>>& keys)
 {
-    constexpr int mostHalvings = 8;
+    constexpr int maxHalvings = 8;
     bool isLinear = true;
     for (const double share : {0.25, 0.5, 0.75})
     {
@@ -34,7 +34,7 @@ void addKeysBetween(Curve& curve, const CurveKey<Value>& from, const CurveKey<Va
         isLinear = isLinear && Curve::difference(linear, exact) <= 1e-5 * Curve::size(exact);
     }
     const auto middle = static_cast<double>(static_cast<float>(0.5 * (from.seconds + to.seconds)));
-    if (isLinear || depth == mostHalvings || !(from.seconds < middle && middle < to.seconds)) return;
+    if (isLinear || depth == maxHalvings || !(from.seconds < middle && middle < to.seconds)) return;
     const CurveKey<Value> between{middle, curve.at(middle)};
     addKeysBetween(curve, from, between, depth + 1, keys);
     keys.push_back(between);

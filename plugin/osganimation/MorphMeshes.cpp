@@ -71,10 +71,10 @@ std::vector<float> MorphMotion::at(double seconds)
 
 double MorphMotion::difference(const std::vector<float>& a, const std::vector<float>& b)
 {
-    double largest = 0.0;
+    double max = 0.0;
     for (std::size_t i = 0; i < a.size(); ++i)
-        largest = std::max(largest, static_cast<double>(std::abs(a[i] - b[i])));
-    return largest;
+        max = std::max(max, static_cast<double>(std::abs(a[i] - b[i])));
+    return max;
 }
 
 std::vector<float> MorphMotion::between(const std::vector<float>& from, const std::vector<float>& to, float share)

@@ -9,7 +9,6 @@
 #include <osgAnimation/MorphGeometry>
 
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace osgGpuAnimation::osganimation

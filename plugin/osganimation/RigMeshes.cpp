@@ -22,7 +22,7 @@ namespace osgGpuAnimation::osganimation
 namespace
 {
 
-constexpr std::size_t mostInfluences = 4 * SkinnedGeometry::maxInfluenceSets;
+constexpr std::size_t maxInfluences = 4 * SkinnedGeometry::maxInfluenceSets;
 
 /// All weights of one vertex: indices of RigMesh::bones.
 using VertexWeights = std::vector<std::pair<unsigned short, float>>;
@@ -182,10 +182,10 @@ std::size_t normalize(std::vector<VertexWeights>& weights)
     for (VertexWeights& vertex : weights)
     {
         std::sort(vertex.begin(), vertex.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
-        if (vertex.size() > mostInfluences)
+        if (vertex.size() > maxInfluences)
         {
             ++reduced;
-            vertex.resize(mostInfluences);
+            vertex.resize(maxInfluences);
         }
         float sum = 0.0f;
         for (const auto& [entry, weight] : vertex)
@@ -198,11 +198,11 @@ std::size_t normalize(std::vector<VertexWeights>& weights)
 
 void setInfluences(SkinnedGeometry& mesh, const std::vector<VertexWeights>& weights)
 {
-    std::size_t most = 1;
+    std::size_t max = 1;
     for (const VertexWeights& vertex : weights)
-        most = std::max(most, vertex.size());
+        max = std::max(max, vertex.size());
     const auto count = static_cast<unsigned int>(weights.size());
-    for (unsigned int set = 0; 4 * set < most; ++set)
+    for (unsigned int set = 0; 4 * set < max; ++set)
     {
         osg::ref_ptr<osg::Vec4usArray> entries = new osg::Vec4usArray(osg::Array::BIND_PER_VERTEX, count);
         osg::ref_ptr<osg::Vec4Array> shares = new osg::Vec4Array(osg::Array::BIND_PER_VERTEX, count);

@@ -57,8 +57,8 @@ void transferSurroundings(ValueStream& stream, Environment& environment)
     Source source = sourceOf(environment);
     stream.values(intensity, rotation, isToneMapped);
     stream.limited("the source of surroundings", source, Source::Faces).endLine();
-    constexpr double largest = std::numeric_limits<float>::max();
-    if (!(intensity >= 0.0 && intensity <= largest && std::abs(rotation) <= largest))
+    constexpr double max = std::numeric_limits<float>::max();
+    if (!(intensity >= 0.0 && intensity <= max && std::abs(rotation) <= max))
         return stream.fail("surroundings of the intensity " + std::to_string(intensity) + ", turned by " +
                            std::to_string(rotation));
     if (stream.hasRead())

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "serializers/StoredAnimation.h"
 
-#include "cache/SeparateLoads.h"
-#include "cache/TypedWriters.h"
-#include "serializers/StoredCompactClips.h"
-#include "serializers/StoredConstraints.h"
+#include "serializers/RegistryHooks.h"
 
+#include <osgGpuAnimation/animation/AnimationLayer.h>
 #include <osgGpuAnimation/animation/Clip.h>
 #include <osgGpuAnimation/animation/keyframes/CompactTracks.h>
 #include <osgGpuAnimation/animation/LayerSnapshot.h>
@@ -23,8 +21,7 @@ namespace
 {
 
 // Every file with objects of ours contains a set.
-SeparateLoads::Installation separateLoads;
-TypedWriters::Installation typedWriters;
+RegistryHooks registryHooks;
 
 void transferJoints(ValueStream& stream, std::vector<Joint>& joints)
 {

@@ -5,6 +5,8 @@
 
 #include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/Clip.h>
+#include <osgGpuAnimation/animation/Constraint.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 
 #include <osg/Group>
@@ -51,5 +53,19 @@ void transferFileToNode(ValueStream& stream, Node& node)
     transferMatrix(stream, matrix);
     if (stream.hasRead()) stream.require("a node: ", node.setFileToNode(matrix));
 }
+
+/// The declarations of a set.
+void transferConstraints(ValueStream& stream, std::vector<Constraint>& constraints);
+
+/// The targets of a controller. Reading expects a controller of the same set; a target that does not fit the set is
+/// dropped, with a warning.
+void transferTargets(ValueStream& stream, AnimationController& controller);
+
+// The keyframes of compact clips in files of stored scenes. clip: has its times and numbers of tracks; reading adds its
+// data and compact tracks, which Clip::create() checks. bytesLeft: the memory for the data of all compact clips of a
+// set; reading subtracts from it, and beyond it the file is unreadable.
+
+/// See CompactTracks: its tracks and records, the transforms of joints at rest, and the morph weights.
+void transferCompactKeyframes(ValueStream& stream, ClipParts& clip, std::size_t& bytesLeft);
 
 } // namespace osgGpuAnimation::serializers

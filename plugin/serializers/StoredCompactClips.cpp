@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "serializers/StoredCompactClips.h"
+#include "serializers/StoredAnimation.h"
 
 #include <osgGpuAnimation/animation/keyframes/CompactTracks.h>
-
-#include <cstring>
 
 namespace osgGpuAnimation::serializers
 {
@@ -12,6 +10,8 @@ namespace
 {
 
 constexpr std::size_t floatsATransform = sizeof(JointTransform) / sizeof(float);
+constexpr std::size_t wordsATrack = 34; // integers, and the bits of floats
+static_assert(sizeof(CompactTracks::Track) == wordsATrack * sizeof(std::uint32_t), "a track has 32-bit numbers alone");
 
 /// The keyframes of a compact clip as the file has them.
 struct CompactParts
@@ -52,61 +52,17 @@ Result<void> fillKeyframes(const CompactParts& compact, ClipParts& clip, std::si
     return {};
 }
 
-void transferWords(ValueStream& stream, glm::uvec3& words)
-{
-    for (int axis = 0; axis < 3; ++axis)
-    {
-        auto integer = static_cast<std::int32_t>(words[axis]);
-        stream.value(integer);
-        words[axis] = static_cast<std::uint32_t>(integer);
-    }
-}
-
-void transferTrack(ValueStream& stream, CompactTracks::Track& track)
-{
-    stream.property("Track").value(track.rotation.firstBit);
-    transferWords(stream, track.rotation.bits);
-    transferWords(stream, track.rotation.ranges);
-    auto place = static_cast<std::int32_t>(track.rotation.place);
-    stream.value(place);
-    track.rotation.place = static_cast<std::uint32_t>(place);
-    for (CompactTracks::Part* part : {&track.translation, &track.scale})
-    {
-        stream.value(part->firstBit);
-        transferWords(stream, part->bits);
-        stream.floats(&part->base.x, 3).floats(&part->step.x, 3);
-    }
-    stream.endLine();
-}
-
-/// The records as 32-bit words: by keyframe, then by texel.
-void transferRecords(ValueStream& stream, CompactTracks& tracks)
-{
-    stream.property("RecordSize").value(tracks.recordSize).endLine();
-    stream.list("Records", tracks.records,
-                [&](glm::uvec4& texel)
-                {
-                    for (int word = 0; word < 4; ++word)
-                    {
-                        std::int32_t integer = 0;
-                        std::memcpy(&integer, &texel[word], sizeof(integer));
-                        stream.value(integer);
-                        std::memcpy(&texel[word], &integer, sizeof(integer));
-                    }
-                    stream.endLine();
-                });
-}
-
 } // namespace
 
 void transferCompactKeyframes(ValueStream& stream, ClipParts& clip, std::size_t& bytesLeft)
 {
     CompactParts compact;
     if (!stream.isReading()) compact = toCompactParts(clip);
-    stream.list("Compact", compact.tracks.tracks, [&](CompactTracks::Track& track) { transferTrack(stream, track); });
+    stream.block<std::uint32_t>("Compact", compact.tracks.tracks, wordsATrack);
     stream.block("Held", compact.held, floatsATransform);
     stream.block("Weights", compact.weights, floatsATransform);
-    transferRecords(stream, compact.tracks);
+    stream.property("RecordSize").value(compact.tracks.recordSize).endLine();
+    stream.block<std::uint32_t>("Records", compact.tracks.records, 8); // by keyframe, then by texel
     if (!stream.hasRead()) return;
     stream.require("", fillKeyframes(compact, clip, bytesLeft));
     if (!stream.isGood()) return;

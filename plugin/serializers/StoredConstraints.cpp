@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "serializers/StoredConstraints.h"
+#include "serializers/StoredAnimation.h"
 
 #include <osg/Notify>
 

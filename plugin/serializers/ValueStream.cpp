@@ -10,7 +10,7 @@ namespace osgGpuAnimation::serializers
 namespace
 {
 
-constexpr std::size_t longestName = 1 << 20;
+constexpr std::size_t maxNameBytes = 1 << 20;
 
 /// A name as one word of plain characters, percent-encoded like a URI ("Hand R" is Hand%20R, the empty name is %): OSG
 /// 3.6 reads beyond the end of a file that is cut off inside a quoted string.
@@ -119,7 +119,7 @@ ValueStream& ValueStream::value(std::string& text)
     value(length);
     if (_out) _out->writeCharArray(text.data(), static_cast<unsigned int>(length));
     if (_out) return *this;
-    if (length > longestName) fail("a name of " + std::to_string(length) + " characters");
+    if (length > maxNameBytes) fail("a name of " + std::to_string(length) + " characters");
     text.assign(isGood() ? length : 0, '\0');
     return readBytes(text.data(), text.size(), 1);
 }
@@ -131,13 +131,13 @@ ValueStream& ValueStream::value(AffineMatrix& matrix)
     return *this;
 }
 
-ValueStream& ValueStream::limited(const char* subject, std::int32_t& integer, std::int32_t least, std::int32_t most)
+ValueStream& ValueStream::limited(const char* subject, std::int32_t& integer, std::int32_t min, std::int32_t max)
 {
     number(integer);
-    if (integer >= least && integer <= most) return *this;
-    fail(std::string(subject) + " is " + std::to_string(integer) + ", not one of " + std::to_string(least) + " to " +
-         std::to_string(most));
-    integer = least;
+    if (integer >= min && integer <= max) return *this;
+    fail(std::string(subject) + " is " + std::to_string(integer) + ", not one of " + std::to_string(min) + " to " +
+         std::to_string(max));
+    integer = min;
     return *this;
 }
 

@@ -63,8 +63,8 @@ public:
     {
         return (value(each), ...);
     }
-    /// An integer in [least, most]; any other makes the file unreadable and reads as `least`.
-    ValueStream& limited(const char* subject, std::int32_t& integer, std::int32_t least, std::int32_t most);
+    /// An integer in [min, max]; any other makes the file unreadable and reads as `min`.
+    ValueStream& limited(const char* subject, std::int32_t& integer, std::int32_t min, std::int32_t max);
     /// The version of the format, of which there is one; another one makes the file unreadable.
     ValueStream& version(const char* subject);
     /// An enum whose values are 0 to `last`.

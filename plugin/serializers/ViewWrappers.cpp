@@ -2,11 +2,13 @@
 #include "serializers/ValueStream.h"
 
 #include <osgGpuAnimation/looks/shading/PunctualLight.h>
+#include <osgGpuAnimation/nodes/studio/Studio.h>
+#include <osgGpuAnimation/nodes/viewing/RaisedHome.h>
 #include <osgGpuAnimation/nodes/viewing/StartView.h>
 
 #include <osg/Notify>
 
-// Lights and first views in OSG's own formats. The cameras themselves are OSG's.
+// Lights, studios and first views in OSG's own formats. The cameras themselves are OSG's.
 
 namespace osgGpuAnimation::serializers
 {
@@ -47,6 +49,12 @@ osgDB::RegisterWrapperProxy wrappers[] = {
     {[]() -> osg::Object* { return new StartView; }, "osgGpuAnimation::StartView",
      "osg::Object osg::Callback osgGpuAnimation::StartView",
      [](osgDB::ObjectWrapper* wrapper) { addProperty(wrapper, "Camera", &transferCamera); }},
+    {[]() -> osg::Object* { return new Studio; }, "osgGpuAnimation::Studio",
+     "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group osgGpuAnimation::Environment "
+     "osgGpuAnimation::Studio",
+     [](osgDB::ObjectWrapper*) {}}, // makes its ground and backdrop itself
+    {[]() -> osg::Object* { return new RaisedHome; }, "osgGpuAnimation::RaisedHome",
+     "osg::Object osg::Callback osgGpuAnimation::RaisedHome", [](osgDB::ObjectWrapper*) {}},
 };
 
 } // namespace

@@ -40,7 +40,7 @@ const char* const exitStatus = "\n\nExit status: 0 done, 1 a file is at fault (t
                                "2 wrong usage.";
 
 const char* const inspectHelp =
-    R"(What is told: joints and depth of the hierarchy, skins, palette entries (matrices computed on the GPU for each
+    R"(Prints: joints and depth of the hierarchy, skins, palette entries (matrices computed on the GPU for each
 character), clips, meshes, materials, lights, cameras, extensions, bytes on the GPU, warnings.
 
   osggpuanim inspect knight.glb
@@ -168,16 +168,16 @@ std::string messageOf(const CLI::ParseError& fault, const CLI::App& app)
 }
 
 /// --clips FILE, which may come again, and --clip-joints FILE.
-void addClips(CLI::App& command, std::vector<std::string>& files, std::string& joints)
+void addClips(CLI::App& command, ModelArguments& arguments)
 {
     command
-        .add_option("--clips", files,
+        .add_option("--clips", arguments.clips,
                     "Add the clips of another file (.gltf, .glb and what Assimp reads), for joints of the same names; "
                     "may come again")
         ->option_text("FILE")
         ->allow_extra_args(false);
     command
-        .add_option("--clip-joints", joints,
+        .add_option("--clip-joints", arguments.clipJoints,
                     "Joints and their counterparts in those files, as JSON: {\"Hips\": \"pelvis\"}")
         ->option_text("FILE");
 }
@@ -218,110 +218,105 @@ CommandLine::CommandLine() : _app(description, "osggpuanim")
     addConvert();
 }
 
+template <typename Command>
+CLI::App& CommandLine::addCommand(const char* name, const char* purpose, const std::string& help,
+                                  const std::string& file, Command& command)
+{
+    CLI::App& app = *_app.add_subcommand(name, purpose);
+    app.footer(help + exitStatus);
+    app.add_option("FILE", command.file, file)->required();
+    addClips(app, command);
+    app.callback([this, &command] { _run = [&command] { return command.run(); }; });
+    return app;
+}
+
 void CommandLine::addInspect()
 {
-    _inspectApp = _app.add_subcommand("inspect", "What is in a file and what it costs");
-    _inspectApp->footer(std::string(inspectHelp) + exitStatus);
-    _inspectApp->add_option("FILE", _inspect.file, anyModel)->required();
-    addClips(*_inspectApp, _inspect.clips, _inspect.clipJoints);
-    _inspectApp->add_flag("--json", _inspect.json, "JSON, for programs");
-    addCompact(*_inspectApp, _inspect.compact);
+    CLI::App& app = addCommand("inspect", "What is in a file and what it costs", inspectHelp, anyModel, _inspect);
+    app.add_flag("--json", _inspect.json, "JSON, for programs");
+    addCompact(app, _inspect.compact);
 }
 
 void CommandLine::addPose()
 {
-    _poseApp = _app.add_subcommand("pose", "Where joints and vertices are at given times");
-    _poseApp->footer(std::string(poseHelp) + exitStatus);
-    _poseApp->add_option("FILE", _pose.file, anyModel)->required();
-    addClips(*_poseApp, _pose.clips, _pose.clipJoints);
-    CLI::Option* clip = _poseApp->add_option("--clip", _pose.request.clip,
-                                             "A clip's name, or an animation's number where none has that name; "
-                                             "default: the first clip");
+    CLI::App& app = addCommand("pose", "Where joints and vertices are at given times", poseHelp, anyModel, _pose);
+    CLI::Option* clip = app.add_option("--clip", _pose.request.clip,
+                                       "A clip's name, or an animation's number where none has that name; "
+                                       "default: the first clip");
     CLI::Option* time =
-        _poseApp->add_option("--time", _pose.request.times, "Seconds on the clip's own time line; may come again")
+        app.add_option("--time", _pose.request.times, "Seconds on the clip's own time line; may come again")
             ->check(checkFinite)
             ->allow_extra_args(false);
     CLI::Option* bind =
-        _poseApp->add_flag("--bind", _pose.request.bind, "No clip: the nodes as the file has them, at time 0");
-    CLI::Option* like = _poseApp->add_option("--like", _pose.like,
-                                             "A gltf-pose/1 document whose clip, times, set weights and vertices are "
-                                             "to be taken");
+        app.add_flag("--bind", _pose.request.bind, "No clip: the nodes as the file has them, at time 0");
+    CLI::Option* like = app.add_option("--like", _pose.like,
+                                       "A gltf-pose/1 document whose clip, times, set weights and vertices are "
+                                       "to be taken");
     like->excludes(clip)->excludes(time)->excludes(bind);
     bind->excludes(clip)->excludes(time);
     addChoice<PoseCommand::Evaluator>(
-        *_poseApp, "--evaluator", _pose.evaluator,
+        app, "--evaluator", _pose.evaluator,
         {{"gpu", PoseCommand::Evaluator::Gpu}, {"cpu", PoseCommand::Evaluator::Cpu}},
         "gpu (default): read back from the palette buffer and captured from the skinning shader; "
         "cpu: the same computed without GL");
-    _poseApp->add_option("-o,--output", _pose.output, "OUT.json; default: standard output");
+    app.add_option("-o,--output", _pose.output, "OUT.json; default: standard output");
 }
 
 void CommandLine::addRender()
 {
-    _renderApp = _app.add_subcommand("render", "Pictures of a file, without a display");
-    _renderApp->footer(std::string(renderHelp) + exitStatus);
-    _renderApp->add_option("FILE", _render.file, std::string(anyModel) + "; or a crowd of it: FILE.20x20.crowd")
-        ->required();
-    addClips(*_renderApp, _render.clips, _render.clipJoints);
-    _renderApp->add_option("--clip", _render.clip,
-                           "A clip's name, or an animation's number where none has that name; default: the first clip");
-    _renderApp->add_option("--variant", _render.variant,
-                           "A variant of the file's materials: its name, or its number where none has that name; "
-                           "default: none");
+    CLI::App& app = addCommand("render", "Pictures of a file, without a display", renderHelp,
+                               std::string(anyModel) + "; or a crowd of it: FILE.20x20.crowd", _render);
+    app.add_option("--clip", _render.clip,
+                   "A clip's name, or an animation's number where none has that name; default: the first clip");
+    app.add_option("--variant", _render.variant,
+                   "A variant of the file's materials: its name, or its number where none has that name; "
+                   "default: none");
     CLI::Option* camera =
-        _renderApp->add_option("--camera", _render.camera,
-                               "A camera of the file: its name, or its number where none has that name; default: a "
-                               "view of everything");
-    _renderApp
-        ->add_option_function<std::string>(
-            "--view", [this](const std::string& text) { _render.view = readView(text); },
-            "From where, in degrees: 0,0 is level, in front; azimuth 90 is the model's left side; elevation 90 is "
-            "above; "
-            "default: about 29,15")
+        app.add_option("--camera", _render.camera,
+                       "A camera of the file: its name, or its number where none has that name; default: a "
+                       "view of everything");
+    app.add_option_function<std::string>(
+           "--view", [this](const std::string& text) { _render.view = readView(text); },
+           "From where, in degrees: 0,0 is level, in front; azimuth 90 is the model's left side; elevation 90 is "
+           "above; "
+           "default: about 29,15")
         ->option_text("AZIMUTH,ELEVATION")
         ->excludes(camera);
-    _renderApp->add_option("--time", _render.time, "Seconds; clips loop (default 0)")->check(checkFinite);
-    _renderApp
-        ->add_option_function<std::string>(
-            "--size", [this](const std::string& text) { readSize(text, _render); }, "WxH in pixels (default 800x600)")
+    app.add_option("--time", _render.time, "Seconds; clips loop (default 0)")->check(checkFinite);
+    app.add_option_function<std::string>(
+           "--size", [this](const std::string& text) { readSize(text, _render); }, "WxH in pixels (default 800x600)")
         ->option_text("WxH");
-    CLI::Option* frames = _renderApp->add_option("--frames", _render.frames, "How many pictures, numbered from 0001")
+    CLI::Option* frames = app.add_option("--frames", _render.frames, "How many pictures, numbered from 0001")
                               ->check(CLI::Range(1, 1000000));
-    _renderApp
-        ->add_option("--turntable", _render.turntable,
-                     "How many pictures around everything, numbered from 0001, the first from --view; the camera moves "
-                     "counter-clockwise, seen from above")
+    app.add_option("--turntable", _render.turntable,
+                   "How many pictures around everything, numbered from 0001, the first from --view; the camera moves "
+                   "counter-clockwise, seen from above")
         ->check(CLI::Range(1, 1000000))
         ->excludes(frames)
         ->excludes(camera);
-    _renderApp->add_option("--fps", _render.framesPerSecond, "Pictures a second (default 30)")
+    app.add_option("--fps", _render.framesPerSecond, "Pictures a second (default 30)")
         ->check(CLI::Range(0.001, 100000.0))
         ->needs(frames);
     CLI::Option* look = addChoice<Look>(
-        *_renderApp, "--look", _render.look,
+        app, "--look", _render.look,
         {{"studio", Look::Studio}, {"sun", Look::Sun}, {"furnace", Look::Furnace}, {"file", Look::File}},
         "studio: image-based light with tone mapping; sun: one light and an even surrounding; furnace: a "
         "white surrounding; file: the file's own lights (default studio)");
-    _renderApp
-        ->add_option(
-            "--environment", _render.environment,
-            "An equirectangular picture in place of the studio; not with --look. Radiance .hdr of any origin; OSG's "
-            "plugins read the other formats and trust them")
+    app.add_option(
+           "--environment", _render.environment,
+           "An equirectangular picture in place of the studio; not with --look. Radiance .hdr of any origin; OSG's "
+           "plugins read the other formats and trust them")
         ->option_text("FILE")
         ->excludes(look);
-    _renderApp->add_option("-o,--output", _render.output, "OUT.png")->required()->check(checkPng);
+    app.add_option("-o,--output", _render.output, "OUT.png")->required()->check(checkPng);
 }
 
 void CommandLine::addConvert()
 {
-    _convertApp = _app.add_subcommand("convert", "A model and its clips as one file");
-    _convertApp->footer(std::string(convertHelp) + exitStatus);
-    _convertApp->add_option("FILE", _convert.file, "A model of any format that can be read")->required();
-    addClips(*_convertApp, _convert.clips, _convert.clipJoints);
-    addCompact(*_convertApp, _convert.compact);
-    _convertApp->add_option("-o,--output", _convert.output, "OUT.glb, .osgb, .osgt or .osgx")
-        ->required()
-        ->check(checkSceneFile);
+    CLI::App& app = addCommand("convert", "A model and its clips as one file", convertHelp,
+                               "A model of any format that can be read", _convert);
+    addCompact(app, _convert.compact);
+    app.add_option("-o,--output", _convert.output, "OUT.glb, .osgb, .osgt or .osgx")->required()->check(checkSceneFile);
 }
 
 int CommandLine::run(int argc, char** argv)
@@ -329,7 +324,7 @@ int CommandLine::run(int argc, char** argv)
     try
     {
         _app.parse(argc, argv);
-        if (_poseApp->parsed() && _pose.like.empty() && !_pose.request.bind && _pose.request.times.empty())
+        if (_app.got_subcommand("pose") && _pose.like.empty() && !_pose.request.bind && _pose.request.times.empty())
             throw CLI::RequiredError("pose: one of --time, --bind and --like");
     }
     catch (const CLI::ParseError& fault)
@@ -338,18 +333,10 @@ int CommandLine::run(int argc, char** argv)
         std::cerr << "osggpuanim: " << messageOf(fault, _app) << "\nRun with --help for more information." << std::endl;
         return statusWrongUsage;
     }
-    const Result<void> done = runCommand();
+    const Result<void> done = _run();
     if (done) return statusDone;
     std::cerr << "osggpuanim: " << done.error().message << std::endl;
     return statusFileAtFault;
-}
-
-Result<void> CommandLine::runCommand() const
-{
-    if (_inspectApp->parsed()) return _inspect.run();
-    if (_poseApp->parsed()) return _pose.run();
-    if (_convertApp->parsed()) return _convert.run();
-    return _render.run();
 }
 
 } // namespace osgGpuAnimation::tool

@@ -8,6 +8,7 @@
 
 #include <CLI/App.hpp>
 
+#include <functional>
 #include <string>
 
 namespace osgGpuAnimation::tool
@@ -23,17 +24,17 @@ public:
     int run(int argc, char** argv);
 
 private:
+    /// A command with what all have: a help, FILE, --clips and --clip-joints.
+    template <typename Command>
+    CLI::App& addCommand(const char* name, const char* purpose, const std::string& help, const std::string& file,
+                         Command& command);
     void addInspect();
     void addPose();
     void addRender();
     void addConvert();
-    Result<void> runCommand() const;
 
     CLI::App _app;
-    CLI::App* _inspectApp = nullptr;
-    CLI::App* _poseApp = nullptr;
-    CLI::App* _renderApp = nullptr;
-    CLI::App* _convertApp = nullptr;
+    std::function<Result<void>()> _run; ///< the command that was parsed
     InspectCommand _inspect;
     PoseCommand _pose;
     RenderCommand _render;

@@ -4,8 +4,7 @@
 #include "gltf/Export.h"
 #include "gltf/file/ProgressLine.h"
 #include "gltf/file/SavedFile.h"
-#include "gltf/scene/ClipFiles.h"
-#include "tool/ModelFile.h"
+#include "gltf/import/ClipFiles.h"
 
 #include <osgGpuAnimation/nodes/CompactedCharacter.h>
 #include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
@@ -16,7 +15,7 @@
 #include <osgDB/XmlParser>
 
 #include <algorithm>
-#include <iostream>
+#include <filesystem>
 #include <sstream>
 
 namespace osgGpuAnimation::tool
@@ -168,10 +167,12 @@ Result<std::string> osgFileOf(const osg::Node& scene, const std::string& extensi
 
 Result<void> ConvertCommand::run() const
 {
-    const Result<gltf::ImportOptions> given = importOptions(clips, clipJoints);
+    std::error_code missing;
+    if (std::filesystem::equivalent(file, output, missing))
+        return Error{output + ": it is the file to convert, which would be lost; name another output"};
+    const Result<gltf::ImportOptions> given = importOptions(*this);
     if (!given) return given.error();
     gltf::ImportOptions options = given.value();
-    if (compact > 0.0) options.compact = compact;
     const std::string extension = osgDB::getLowerCaseFileExtension(output);
     options.keepEncoded = extension == "glb";
     const Result<Scene> scene = read(file, options);

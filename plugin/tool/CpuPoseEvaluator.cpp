@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tool/CpuPoseEvaluator.h"
+#include "tool/PoseEvaluator.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
@@ -7,20 +7,41 @@
 namespace osgGpuAnimation::tool
 {
 
-Result<EvaluatedPose> CpuPoseEvaluator::evaluate(const PoseInstruction& instruction,
-                                                 const std::vector<FixedEntry>& fixedEntries)
+namespace
 {
-    EvaluatedPose pose;
-    Pose::evaluate(*_model.set, instruction, AffineMatrix(), pose.palette);
-    for (const FixedEntry& fixed : fixedEntries)
-        pose.palette[fixed.entry] = fixed.value;
-    for (const gltf::ImportedPrimitive& primitive : _model.primitives)
+
+class CpuPoseEvaluator : public PoseEvaluator
+{
+public:
+    explicit CpuPoseEvaluator(const gltf::ImportedModel& model) : _model(model) {}
+
+    std::string name() const override { return "osggpuanim, CPU"; }
+
+    Result<EvaluatedPose> evaluate(const PoseInstruction& instruction,
+                                   const std::vector<FixedEntry>& fixedEntries) override
     {
-        pose.positions.emplace_back();
-        const auto* geometry = dynamic_cast<const SkinnedGeometry*>(primitive.geometry.get());
-        if (geometry) geometry->computePositions(pose.palette, pose.positions.back());
+        EvaluatedPose pose;
+        Pose::evaluate(*_model.set, instruction, AffineMatrix(), pose.palette);
+        for (const FixedEntry& fixed : fixedEntries)
+            pose.palette[fixed.entry] = fixed.value;
+        for (const gltf::ImportedPrimitive& primitive : _model.primitives)
+        {
+            pose.positions.emplace_back();
+            const auto* geometry = dynamic_cast<const SkinnedGeometry*>(primitive.geometry.get());
+            if (geometry) geometry->computePositions(pose.palette, pose.positions.back());
+        }
+        return pose;
     }
-    return pose;
+
+private:
+    const gltf::ImportedModel& _model;
+};
+
+} // namespace
+
+std::unique_ptr<PoseEvaluator> cpuPoseEvaluator(const gltf::ImportedModel& model)
+{
+    return std::make_unique<CpuPoseEvaluator>(model);
 }
 
 } // namespace osgGpuAnimation::tool

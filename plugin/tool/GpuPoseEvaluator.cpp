@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: MIT
-#include "tool/GpuPoseEvaluator.h"
+#include "tool/PoseEvaluator.h"
 
+#include <osgGpuAnimation/gpu/EglGraphicsContext.h>
+#include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/looks/CharacterProgram.h>
+#include <osgGpuAnimation/mesh/draw/PaletteBinding.h>
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 
 #include <ShaderSources.h>
 
+#include <osg/Program>
 #include <osg/RenderInfo>
+#include <osg/StateSet>
 
 #ifndef GL_TEXTURE_BUFFER_DATA_STORE_BINDING
 #define GL_TEXTURE_BUFFER_DATA_STORE_BINDING 0x8C2D
@@ -41,18 +47,28 @@ osg::ref_ptr<SkinnedGeometry> asPoints(const osg::Geometry* geometry)
     return points;
 }
 
-} // namespace
-
-Result<std::unique_ptr<PoseEvaluator>> GpuPoseEvaluator::create(const gltf::ImportedModel& model)
+class GpuPoseEvaluator : public PoseEvaluator
 {
-    Result<osg::ref_ptr<EglGraphicsContext>> context = EglGraphicsContext::create(1, 1);
-    if (!context) return context.error();
-    if (!context.value()->realize() || !context.value()->makeCurrent())
-        return Error{"the graphics context cannot be used"};
-    PosePipeline* pipeline = PosePipeline::of(*context.value()->getState());
-    if (!pipeline) return Error{"the graphics context lacks OpenGL 3.3's transform feedback"};
-    return std::unique_ptr<PoseEvaluator>(new GpuPoseEvaluator(model, context.value(), *pipeline));
-}
+public:
+    GpuPoseEvaluator(const gltf::ImportedModel& model, osg::ref_ptr<EglGraphicsContext> context,
+                     PosePipeline& pipeline);
+    ~GpuPoseEvaluator() override;
+
+    std::string name() const override;
+    Result<EvaluatedPose> evaluate(const PoseInstruction& instruction,
+                                   const std::vector<FixedEntry>& fixedEntries) override;
+
+private:
+    void writeEntries(const std::vector<FixedEntry>& fixedEntries);
+    std::vector<glm::dvec3> capture(SkinnedGeometry& points);
+
+    const gltf::ImportedModel& _model;
+    osg::ref_ptr<EglGraphicsContext> _context;
+    PosePipeline& _pipeline;
+    osg::ref_ptr<osg::StateSet> _stateSet; ///< the capturing program and the character's palette
+    /// One a primitive: its vertices in order, as points. Null if it is not drawn from the palette.
+    std::vector<osg::ref_ptr<SkinnedGeometry>> _points;
+};
 
 GpuPoseEvaluator::GpuPoseEvaluator(const gltf::ImportedModel& model, osg::ref_ptr<EglGraphicsContext> context,
                                    PosePipeline& pipeline)
@@ -148,6 +164,19 @@ std::vector<glm::dvec3> GpuPoseEvaluator::capture(SkinnedGeometry& points)
     for (std::size_t v = 0; v < numbers.size(); v += 3)
         positions.emplace_back(numbers[v], numbers[v + 1], numbers[v + 2]);
     return positions;
+}
+
+} // namespace
+
+Result<std::unique_ptr<PoseEvaluator>> gpuPoseEvaluator(const gltf::ImportedModel& model)
+{
+    Result<osg::ref_ptr<EglGraphicsContext>> context = EglGraphicsContext::create(1, 1);
+    if (!context) return context.error();
+    if (!context.value()->realize() || !context.value()->makeCurrent())
+        return Error{"the graphics context cannot be used"};
+    PosePipeline* pipeline = PosePipeline::of(*context.value()->getState());
+    if (!pipeline) return Error{"the graphics context lacks OpenGL 3.3's transform feedback"};
+    return std::unique_ptr<PoseEvaluator>(std::make_unique<GpuPoseEvaluator>(model, context.value(), *pipeline));
 }
 
 } // namespace osgGpuAnimation::tool

@@ -1,22 +1,30 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/math/Result.h>
-
-#include <string>
-#include <vector>
+#include "tool/ModelFile.h"
 
 namespace osgGpuAnimation::tool
 {
 
-/// `osggpuanim inspect`: prints the content of a file and its memory on standard output.
-struct InspectCommand
+/// `osggpuanim inspect`: prints the content of a file and its memory on standard output, as JSON or as text made from
+/// that JSON:
+///
+///     file, generator, scene
+///     joints       count, depth (levels of the hierarchy), roots (names), list (name, parent: an index or -1)
+///     skins        name, joints                         a skin
+///     paletteEntries
+///     bounds       of the rest pose in the file's axes: [least corner, greatest corner], null if nothing is drawn
+///     clips        index (the file's), name, seconds, keyframes, form (linear or spline), bounds (of what moves)
+///     meshes       count, primitives, vertices, skinned, rigid, still (primitives each), morphTargets
+///     materials    name, alphaMode (OPAQUE, MASK, BLEND), alphaCutoff (of MASK), doubleSided, unlit, maps (map, image:
+///     the
+///                  file's index, size: [width, height], null for a missing picture)
+///     variants, extensions                              names
+///     gpuBytes     animation, meshes, textures, total   in GPU buffers, without the driver's own memory
+///     warnings, notes
+struct InspectCommand : ModelArguments
 {
-    std::string file;
-    std::vector<std::string> clips; ///< files whose clips are added
-    std::string clipJoints;         ///< a JSON file of joint names for those files; empty: none
-    double compact = 0.0;           ///< see gltf::ImportOptions; 0: exact
-    bool json = false;              ///< prints JSON instead of text
+    bool json = false; ///< prints JSON instead of text
 
     /// Error messages begin with the name of the file at fault.
     Result<void> run() const;

@@ -11,6 +11,7 @@
 #include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
 #include <osgDB/FileNameUtils>
+#include <osgDB/FileUtils>
 #include <osgDB/Registry>
 
 #include <filesystem>
@@ -78,12 +79,38 @@ Result<gltf::ImportedModel> importFile(const std::string& fileName, const gltf::
     return model;
 }
 
-/// An error, or true.
+/// Names for OSG's pseudo-loaders are no files: `fox.glb.studio` shows `fox.glb`.
+Error noSuchFile(const std::string& fileName)
+{
+    const std::string extension = osgDB::getLowerCaseFileExtension(fileName);
+    const std::string shown = osgDB::getNameLessExtension(fileName);
+    if (extension == "studio")
+        return Error{".studio is for OSG's viewers; `osggpuanim render " + shown + "` draws in the studio's light"};
+    if (extension == "crowd")
+        return Error{".crowd is for `osggpuanim render` and OSG's viewers; name the model's own file, " +
+                     osgDB::getNameLessExtension(shown)};
+    if (extension == "gpuanim")
+        return Error{
+            "OSG's plugin for .gpuanim is not found: is osgdb_gpuanim in the library path (OSG_LIBRARY_PATH)?"};
+    return Error{"there is no such file"};
+}
+
+/// For messages: what a stored scene may lack.
+std::string missingSerializers(const std::string& fileName)
+{
+    const std::string extension = osgDB::getLowerCaseFileExtension(fileName);
+    const std::string library =
+        osgDB::Registry::instance()->createLibraryNameForExtension("serializers_osggpuanimation");
+    if (extension != "osgb" && extension != "osgt" && extension != "osgx") return "";
+    if (std::filesystem::exists(osgDB::findLibraryFile(library))) return "";
+    return "; characters need osgdb_serializers_osggpuanimation in the library path (OSG_LIBRARY_PATH)";
+}
+
 Result<void> checkRegularFile(const std::string& fileName)
 {
     std::error_code failure;
     const std::filesystem::file_status status = std::filesystem::status(fileName, failure);
-    if (!std::filesystem::exists(status)) return Error{"there is no such file"};
+    if (!std::filesystem::exists(status)) return noSuchFile(fileName);
     if (std::filesystem::is_directory(status)) return Error{"is a folder, not a file"};
     // Reading a pipe or a device could block or never end.
     if (!std::filesystem::is_regular_file(status)) return Error{"is not a regular file"};
@@ -92,22 +119,23 @@ Result<void> checkRegularFile(const std::string& fileName)
 
 } // namespace
 
-Result<gltf::ImportOptions> importOptions(const std::vector<std::string>& clipsFiles, const std::string& clipJoints)
+Result<gltf::ImportOptions> importOptions(const ModelArguments& arguments)
 {
     gltf::ImportOptions options;
     options.allowOutsideClips = true;
+    if (arguments.compact > 0.0) options.compact = arguments.compact;
 #ifdef OSGGPUANIMATION_ASSIMP
     options.otherFormats = assimp::readAsGlb;
 #endif
     std::error_code failure;
-    for (const std::string& file : clipsFiles)
+    for (const std::string& file : arguments.clips)
     {
         options.clipsFiles.push_back(std::filesystem::canonical(file, failure).string());
         if (failure) return Error{file + ": there is no such file"};
     }
-    if (clipJoints.empty()) return options;
-    options.clipJoints = std::filesystem::canonical(clipJoints, failure).string();
-    if (failure) return Error{clipJoints + ": there is no such file"};
+    if (arguments.clipJoints.empty()) return options;
+    options.clipJoints = std::filesystem::canonical(arguments.clipJoints, failure).string();
+    if (failure) return Error{arguments.clipJoints + ": there is no such file"};
     return options;
 }
 
@@ -139,9 +167,11 @@ Result<osg::ref_ptr<osg::Node>> readScene(const std::string& fileName, gltf::Rep
 {
     // readRefNodeFile() would print an error of its own.
     osgDB::ReaderWriter::ReadResult read = osgDB::Registry::instance()->readNode(fileName, nullptr);
-    if (read.status() == osgDB::ReaderWriter::ReadResult::FILE_NOT_FOUND) return Error{"there is no such file"};
+    if (read.status() == osgDB::ReaderWriter::ReadResult::FILE_NOT_FOUND) return noSuchFile(fileName);
     const osg::ref_ptr<osg::Node> scene = read.getNode();
-    if (!scene) return Error{"OSG cannot read it" + (read.message().empty() ? "" : ": " + read.message())};
+    if (!scene)
+        return Error{"OSG cannot read it" + (read.message().empty() ? "" : ": " + read.message()) +
+                     missingSerializers(fileName)};
     if (visitUntil(*scene, isSkeleton) && osgDB::getLowerCaseFileExtension(fileName) != "gpuanim")
         report.warn("its characters of osgAnimation keep their pose; " + osgDB::getSimpleFileName(fileName) +
                     ".gpuanim has their clips");
@@ -152,7 +182,9 @@ Result<gltf::ImportedModel> readModel(const std::string& fileName, const gltf::I
 {
     // Where there is no such file, the name may be one for a pseudo-loader.
     const Result<void> regular = checkRegularFile(fileName);
-    if (!regular && (std::filesystem::exists(fileName) || !isSceneFormat(fileName))) return regular.error();
+    const bool isForViewers = osgDB::getLowerCaseFileExtension(fileName) == "studio";
+    if (!regular && (std::filesystem::exists(fileName) || isForViewers || !isSceneFormat(fileName)))
+        return regular.error();
 
     gltf::Messages messages;
     const Result<gltf::ImportedModel> model = importFile(fileName, options, messages);

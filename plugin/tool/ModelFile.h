@@ -10,10 +10,18 @@
 namespace osgGpuAnimation::tool
 {
 
-/// The options of an import that adds the clips of these files. clipJoints: a file, see gltf::readClipJoints(); empty:
-/// none. The user named them: they may be anywhere, relative to the current folder. Error: a file does not exist; the
-/// message begins with its name.
-Result<gltf::ImportOptions> importOptions(const std::vector<std::string>& clipsFiles, const std::string& clipJoints);
+/// What all commands are told about a model.
+struct ModelArguments
+{
+    std::string file;               ///< of the tool's own formats, or of OSG's: `nathan.osg.gpuanim`
+    std::vector<std::string> clips; ///< files whose clips are added
+    std::string clipJoints;         ///< a JSON file of joint names for them, see gltf::readClipJoints(); empty: none
+    double compact = 0.0;           ///< see gltf::ImportOptions; 0: exact
+};
+
+/// The options of an import. The user named the files: they may be anywhere, relative to the current folder. Error: a
+/// file does not exist; the message begins with its name.
+Result<gltf::ImportOptions> importOptions(const ModelArguments& arguments);
 
 /// Prints the warnings about that file on standard error. error: is printed next, so its own warning is left out.
 void printWarnings(const std::string& file, const gltf::Messages& messages, const std::string& error = std::string());

@@ -2,7 +2,6 @@
 #include "tool/PictureViewer.h"
 
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
-#include <osgGpuAnimation/looks/Environment.h>
 #include <osgGpuAnimation/nodes/viewing/StartView.h>
 
 #include <osg/BoundingBox>

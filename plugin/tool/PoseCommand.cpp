@@ -3,10 +3,6 @@
 
 #include "gltf/file/ProgressLine.h"
 #include "gltf/file/SavedFile.h"
-#include "tool/CpuPoseEvaluator.h"
-#include "tool/GpuPoseEvaluator.h"
-#include "tool/ModelFile.h"
-#include "tool/PoseDocument.h"
 
 #include <osgGpuAnimation/animation/AnimationController.h>
 
@@ -76,12 +72,6 @@ Result<std::vector<FixedEntry>> fixedEntries(const gltf::ImportedModel& model, c
     return entries;
 }
 
-Result<std::unique_ptr<PoseEvaluator>> makeEvaluator(PoseCommand::Evaluator kind, const gltf::ImportedModel& model)
-{
-    if (kind == PoseCommand::Evaluator::Gpu) return GpuPoseEvaluator::create(model);
-    return std::unique_ptr<PoseEvaluator>(std::make_unique<CpuPoseEvaluator>(model));
-}
-
 Result<std::string> evaluate(const gltf::ImportedModel& model, const PoseRequest& request, const PoseCommand& command)
 {
     const Result<int> clip = findClip(model, request);
@@ -91,7 +81,8 @@ Result<std::string> evaluate(const gltf::ImportedModel& model, const PoseRequest
     std::unique_ptr<PoseEvaluator> evaluator;
     if (model.set)
     {
-        Result<std::unique_ptr<PoseEvaluator>> made = makeEvaluator(command.evaluator, model);
+        const bool onGpu = command.evaluator == PoseCommand::Evaluator::Gpu;
+        Result<std::unique_ptr<PoseEvaluator>> made = onGpu ? gpuPoseEvaluator(model) : cpuPoseEvaluator(model);
         if (!made) return made.error();
         evaluator = std::move(made).value();
     }
@@ -129,7 +120,7 @@ Result<void> PoseCommand::run() const
         wanted = read.value();
     }
     if (wanted.bind && wanted.times.empty()) wanted.times = {0.0};
-    const Result<gltf::ImportOptions> given = importOptions(clips, clipJoints);
+    const Result<gltf::ImportOptions> given = importOptions(*this);
     if (!given) return given.error();
     gltf::ImportOptions options = given.value();
     options.noRotation = true;

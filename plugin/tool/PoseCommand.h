@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "tool/PoseRequest.h"
+#include "tool/ModelFile.h"
+#include "tool/PoseDocument.h"
 
 #include <osgGpuAnimation/math/Result.h>
 
@@ -12,7 +13,7 @@ namespace osgGpuAnimation::tool
 {
 
 /// `osggpuanim pose`: writes the poses of a file's joints and vertices at given times, see PoseDocument.
-struct PoseCommand
+struct PoseCommand : ModelArguments
 {
     enum class Evaluator
     {
@@ -20,11 +21,8 @@ struct PoseCommand
         Cpu,
     };
 
-    std::string file;
-    std::vector<std::string> clips; ///< files whose clips are added
-    std::string clipJoints;         ///< a JSON file of joint names for those files; empty: none
-    std::string like;               ///< a document that gives the request; empty: use `request`
-    PoseRequest request;            ///< clip and times; bind with no times is time 0
+    std::string like;    ///< a document that gives the request; empty: use `request`
+    PoseRequest request; ///< clip and times; bind with no times is time 0
     Evaluator evaluator = Evaluator::Gpu;
     std::string output; ///< empty: standard output
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "tool/PoseDocument.h"
 
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
+#include "gltf/file/Elements.h"
+
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
+#include <osg/BoundingBox>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <limits>
-#include <numeric>
 
 namespace osgGpuAnimation::tool
 {
@@ -20,25 +20,12 @@ namespace
 
 using nlohmann::ordered_json;
 
-/// A box in double precision, empty until something is added.
-struct PositionBox
+/// Null for an invalid box.
+ordered_json jsonOf(const osg::BoundingBoxd& box)
 {
-    glm::dvec3 min{std::numeric_limits<double>::max()};
-    glm::dvec3 max{std::numeric_limits<double>::lowest()};
-
-    void add(const glm::dvec3& point)
-    {
-        min = glm::min(min, point);
-        max = glm::max(max, point);
-    }
-    bool empty() const { return min.x > max.x; }
-    double diagonal() const { return glm::length(max - min); }
-    ordered_json json() const
-    {
-        if (empty()) return nullptr;
-        return {{min.x, min.y, min.z}, {max.x, max.y, max.z}};
-    }
-};
+    if (!box.valid()) return nullptr;
+    return {{box.xMin(), box.yMin(), box.zMin()}, {box.xMax(), box.yMax(), box.zMax()}};
+}
 
 ordered_json sixteenNumbers(const glm::dmat4& matrix)
 {
@@ -70,6 +57,33 @@ std::string primitiveName(int node, int primitive)
     return "primitive " + std::to_string(primitive) + " of node " + std::to_string(node);
 }
 
+void readSampled(const nlohmann::json& primitives, PoseRequest& request)
+{
+    for (const nlohmann::json& primitive : primitives)
+    {
+        const PoseRequest::PrimitiveKey key(primitive.at("node").get<int>(), primitive.at("primitive").get<int>());
+        request.sampled[key] = primitive.at("sampled").get<std::vector<std::uint32_t>>();
+    }
+}
+
+PoseRequest readRequest(const nlohmann::json& document)
+{
+    PoseRequest request;
+    const nlohmann::json& clip = document.at("clip");
+    request.bind = clip.is_null();
+    if (!request.bind) request.animation = clip.at("index").get<int>();
+    for (const nlohmann::json& frame : document.at("frames"))
+        request.times.push_back(frame.at("time").get<double>());
+    if (document.contains("fixedWeights"))
+    {
+        for (const nlohmann::json& fixed : document["fixedWeights"])
+            request.fixedWeights.push_back(
+                {fixed.at("node").get<int>(), fixed.at("weights").get<std::vector<double>>()});
+    }
+    if (document.contains("primitives")) readSampled(document["primitives"], request);
+    return request;
+}
+
 } // namespace
 
 Result<PoseDocument> PoseDocument::create(const gltf::ImportedModel& model, const PoseRequest& request, int clip,
@@ -94,8 +108,8 @@ void PoseDocument::addHeader(const PoseRequest& request, int clip, const std::st
     _document["clip"] = nullptr;
     if (clip >= 0)
     {
-        const Clip& played = _model.set->clips()[static_cast<std::size_t>(clip)];
-        _document["clip"] = {{"index", _model.animationOfClip[static_cast<std::size_t>(clip)]},
+        const Clip& played = gltf::elementOf(_model.set->clips(), clip);
+        _document["clip"] = {{"index", gltf::elementOf(_model.animationOfClip, clip)},
                              {"name", nullIfEmpty(played.name())},
                              {"duration", played.duration()}};
     }
@@ -153,32 +167,32 @@ Result<void> PoseDocument::addPrimitives(const PoseRequest& request)
 void PoseDocument::add(double time, const EvaluatedPose& pose)
 {
     ordered_json primitives = ordered_json::array();
-    PositionBox whole;
+    osg::BoundingBoxd whole;
     for (std::size_t p = 0; p < _model.primitives.size(); ++p)
     {
-        PositionBox box;
+        osg::BoundingBoxd box;
         const std::vector<glm::dvec3> all = positions(p, pose);
         for (const glm::dvec3& position : all)
         {
-            box.add(position);
-            whole.add(position);
+            box.expandBy(position.x, position.y, position.z);
+            whole.expandBy(position.x, position.y, position.z);
         }
         for (std::size_t i = 0; i < _model.primitives[p].primitives->size(); ++i)
         {
-            ordered_json primitive = {{"bbox", box.json()}};
+            ordered_json primitive = {{"bbox", jsonOf(box)}};
             for (std::uint32_t vertex : _sampled[primitives.size()])
                 primitive["positions"].push_back({all[vertex].x, all[vertex].y, all[vertex].z});
             primitives.push_back(std::move(primitive));
         }
     }
-    if (_document["frames"].empty() && whole.diagonal() > 0.0 && !whole.empty())
-        _document["modelSize"] = whole.diagonal();
+    if (const double diagonal = 2.0 * whole.radius(); _document["frames"].empty() && whole.valid() && diagonal > 0.0)
+        _document["modelSize"] = diagonal;
     _document["frames"].push_back({{"time", time},
                                    {"nodes", nodeMatrices(pose)},
                                    {"skins", skinMatrices(pose)},
                                    {"weights", weights(pose)},
                                    {"primitives", std::move(primitives)},
-                                   {"bbox", whole.json()}});
+                                   {"bbox", jsonOf(whole)}});
 }
 
 ordered_json PoseDocument::nodeMatrices(const EvaluatedPose& pose) const
@@ -259,6 +273,27 @@ std::vector<glm::dvec3> PoseDocument::positions(std::size_t primitive, const Eva
 std::string PoseDocument::text() const
 {
     return _document.dump() + "\n";
+}
+
+Result<PoseRequest> readPoseRequest(const std::string& fileName)
+{
+    std::ifstream file(fileName, std::ios::binary);
+    if (!file) return Error{"cannot be read"};
+    try
+    {
+        const nlohmann::json document = nlohmann::json::parse(file);
+        if (!document.is_object() || document.value("schema", "") != "gltf-pose/1")
+            return Error{"is not a document of schema gltf-pose/1"};
+        return readRequest(document);
+    }
+    catch (const nlohmann::json::exception& fault)
+    {
+        return Error{fault.what()};
+    }
+    catch (const std::ios_base::failure&)
+    {
+        return Error{"cannot be read"};
+    }
 }
 
 } // namespace osgGpuAnimation::tool

@@ -7,6 +7,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -40,5 +41,15 @@ public:
     virtual Result<EvaluatedPose> evaluate(const PoseInstruction& instruction,
                                            const std::vector<FixedEntry>& fixedEntries) = 0;
 };
+
+// The model must outlive the evaluator; it has a character.
+
+/// With the CPU twins of the shaders: Pose for the palette, SkinnedGeometry::computePositions for the vertices.
+std::unique_ptr<PoseEvaluator> cpuPoseEvaluator(const gltf::ImportedModel& model);
+
+/// With the GPU's pipeline, in a context of its own: reads matrices back from the palette buffer and captures
+/// positions, by transform feedback, from the function of skin.glsl that draws characters. Error: no graphics context
+/// can be created, or it lacks a feature that the pipeline needs.
+Result<std::unique_ptr<PoseEvaluator>> gpuPoseEvaluator(const gltf::ImportedModel& model);
 
 } // namespace osgGpuAnimation::tool

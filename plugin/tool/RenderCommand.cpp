@@ -2,10 +2,11 @@
 #include "tool/RenderCommand.h"
 
 #include "crowd/CrowdGrid.h"
+#include "gltf/export/PictureWriter.h"
 #include "gltf/file/ProgressLine.h"
 #include "gltf/file/SavedFile.h"
-#include "tool/CpuPoseEvaluator.h"
 #include "tool/ModelFile.h"
+#include "tool/PoseEvaluator.h"
 
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/studio/ModelExtent.h>
@@ -21,7 +22,6 @@
 #include <iomanip>
 #include <iostream>
 #include <sstream>
-#include <vector>
 
 namespace osgGpuAnimation::tool
 {
@@ -52,7 +52,7 @@ void addStill(const gltf::ImportedModel& model, std::vector<osg::Vec3d>& points)
 }
 
 /// The vertices of the character in its current pose.
-void addMoving(const gltf::ImportedModel& model, CpuPoseEvaluator& evaluator, std::vector<osg::Vec3d>& points)
+void addMoving(const gltf::ImportedModel& model, PoseEvaluator& evaluator, std::vector<osg::Vec3d>& points)
 {
     const osg::MatrixList places = model.character->getWorldMatrices();
     const Result<EvaluatedPose> pose = evaluator.evaluate(model.character->getController().instruction(), {});
@@ -69,12 +69,12 @@ std::vector<osg::Vec3d> pointsOf(const gltf::ImportedModel& model, const std::ve
     std::vector<osg::Vec3d> points;
     addStill(model, points);
     if (!model.character) return points;
-    CpuPoseEvaluator evaluator(model);
+    const std::unique_ptr<PoseEvaluator> evaluator = cpuPoseEvaluator(model);
     const std::size_t looks = std::min<std::size_t>(times.size(), 64);
     for (std::size_t look = 0; look < looks; ++look)
     {
         showTime(model.character->getController(), times[look * times.size() / looks]);
-        addMoving(model, evaluator, points);
+        addMoving(model, *evaluator, points);
     }
     return points;
 }
@@ -90,11 +90,9 @@ std::string numbered(const std::string& output, std::size_t number)
 Result<void> writePicture(const osg::Image* image, const std::string& file, const std::string& name)
 {
     if (!image) return Error{file + ": OpenGL reported an error while drawing"};
-    osgDB::ReaderWriter* const png = osgDB::Registry::instance()->getReaderWriterForExtension("png");
-    if (!png) return Error{name + ": OSG's plugin for .png is not found"};
-    std::ostringstream bytes; // the plugin does not notice that a disk is full
-    if (!png->writeImage(*image, bytes, nullptr).success()) return Error{name + ": OSG cannot write it"};
-    const Result<void> saved = gltf::saveFile(name, bytes.str());
+    const Result<std::string> png = gltf::encodePng(*image);
+    if (!png) return Error{name + ": " + png.error().message};
+    const Result<void> saved = gltf::saveFile(name, png.value());
     return saved ? saved : Error{name + ": " + saved.error().message};
 }
 
@@ -142,7 +140,7 @@ Result<void> RenderCommand::run() const
         isCrowd ? crowd::parseCrowd(osgDB::getNameLessExtension(file), "") : crowd::CrowdOptions();
     if (!wanted) return Error{file + ": " + wanted.error().message};
     crowd::CrowdOptions grid = wanted.value();
-    const Result<gltf::ImportOptions> given = importOptions(clips, clipJoints);
+    const Result<gltf::ImportOptions> given = importOptions(*this);
     if (!given) return given.error();
     gltf::ImportOptions options = given.value();
     options.camera = camera;
@@ -154,9 +152,6 @@ Result<void> RenderCommand::run() const
     else if (clip)
         grid.clips = {*clip};
     const std::string modelFile = isCrowd ? grid.modelFile : file;
-    if (osgDB::getLowerCaseFileExtension(modelFile) == "studio" && !osgDB::fileExists(modelFile))
-        return Error{modelFile + ": .studio is for OSG's viewers; `osggpuanim render " +
-                     osgDB::getNameLessExtension(modelFile) + "` draws in the studio's light"};
     const Result<gltf::ImportedModel> model = readModel(modelFile, options);
     if (!model) return Error{modelFile + ": " + model.error().message};
     printWarnings(modelFile, model.value().messages);

@@ -3,6 +3,7 @@
 
 #include "crowd/CrowdOptions.h"
 #include "gltf/Import.h"
+#include "tool/ModelFile.h"
 #include "tool/PictureViewer.h"
 
 #include <osgGpuAnimation/math/Result.h>
@@ -17,13 +18,10 @@ namespace osgGpuAnimation::tool
 
 /// `osggpuanim render`: draws pictures of a file without a display. One camera, in front and to the side, shows
 /// everything in all pictures, unless another direction, a way around, or a camera of the file is asked for.
-struct RenderCommand
+struct RenderCommand : ModelArguments ///< or a crowd of it: `fox.glb.20x20.crowd`
 {
     static constexpr int maxSize = 8192; ///< pixels, each way
 
-    std::string file;                   ///< a .gltf or .glb, or a crowd of it: `fox.glb.20x20.crowd`
-    std::vector<std::string> clips;     ///< files whose clips are added
-    std::string clipJoints;             ///< a JSON file of joint names for those files; empty: none
     std::optional<std::string> clip;    ///< name or animation number; default: the first; of a crowd: all, at random
     std::optional<std::string> camera;  ///< of the file: name or number; default: none
     std::optional<std::string> variant; ///< of the file's materials: name or number; default: none

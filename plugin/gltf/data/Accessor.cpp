@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/data/Accessor.h"
 
+#include "gltf/file/Elements.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cstring>
@@ -23,27 +25,13 @@ struct Layout
 
 Layout layoutOf(const tinygltf::Accessor& accessor)
 {
+    const bool isMatrix = accessor.type >= TINYGLTF_TYPE_MAT2 && accessor.type <= TINYGLTF_TYPE_MAT4;
+    const auto count = static_cast<std::size_t>(
+        std::max(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)), 0));
     const std::size_t bytes = componentBytes(accessor.componentType);
-    const auto matrix = [bytes](std::size_t size) { return Layout{size, size, (size * bytes + 3) / 4 * 4}; };
-    switch (accessor.type)
-    {
-    case TINYGLTF_TYPE_SCALAR:
-        return {1, 1, bytes};
-    case TINYGLTF_TYPE_VEC2:
-        return {2, 1, 2 * bytes};
-    case TINYGLTF_TYPE_VEC3:
-        return {3, 1, 3 * bytes};
-    case TINYGLTF_TYPE_VEC4:
-        return {4, 1, 4 * bytes};
-    case TINYGLTF_TYPE_MAT2:
-        return matrix(2);
-    case TINYGLTF_TYPE_MAT3:
-        return matrix(3);
-    case TINYGLTF_TYPE_MAT4:
-        return matrix(4);
-    default:
-        return {0, 0, 0};
-    }
+    if (!isMatrix) return {count, count > 0 ? 1u : 0u, count * bytes};
+    const auto size = static_cast<std::size_t>(accessor.type - TINYGLTF_TYPE_MAT2) + 2;
+    return {size, size, (size * bytes + 3) / 4 * 4};
 }
 
 template <typename Stored>
@@ -69,7 +57,8 @@ Out convert(Stored value, bool normalized)
     {
         if constexpr (std::is_integral_v<Stored>)
             if (normalized)
-                return static_cast<Out>(std::max(-1.0, double(value) / double(std::numeric_limits<Stored>::max())));
+                return static_cast<Out>(std::max(-1.0, static_cast<double>(value) /
+                                                           static_cast<double>(std::numeric_limits<Stored>::max())));
         return static_cast<Out>(value);
     }
 }
@@ -84,28 +73,15 @@ void readElement(const unsigned char* from, const Layout& layout, bool normalize
 
 const unsigned char* viewData(const tinygltf::Model& model, int bufferView, std::size_t byteOffset)
 {
-    const tinygltf::BufferView& view = model.bufferViews[std::size_t(bufferView)];
-    return model.buffers[std::size_t(view.buffer)].data.data() + view.byteOffset + byteOffset;
-}
-
-std::size_t sparseIndex(const unsigned char* indices, int componentType, std::size_t i)
-{
-    switch (componentType)
-    {
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-        return indices[i];
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-        return load<std::uint16_t>(indices + 2 * i);
-    default:
-        return load<std::uint32_t>(indices + 4 * i);
-    }
+    const tinygltf::BufferView& view = elementOf(model.bufferViews, bufferView);
+    return elementOf(model.buffers, view.buffer).data.data() + view.byteOffset + byteOffset;
 }
 
 template <typename Stored, typename Out>
 void readBase(const tinygltf::Model& model, const tinygltf::Accessor& accessor, const Layout& layout, Out* to)
 {
     const std::size_t tight = layout.columns * layout.columnBytes;
-    const std::size_t byteStride = model.bufferViews[std::size_t(accessor.bufferView)].byteStride;
+    const std::size_t byteStride = elementOf(model.bufferViews, accessor.bufferView).byteStride;
     const std::size_t stride = byteStride != 0 ? byteStride : tight;
     const unsigned char* from = viewData(model, accessor.bufferView, accessor.byteOffset);
     if (std::is_same_v<Stored, Out> && stride == layout.columns * layout.rows * sizeof(Out))
@@ -121,11 +97,13 @@ template <typename Stored, typename Out>
 void readSparse(const tinygltf::Model& model, const tinygltf::Accessor& accessor, const Layout& layout, Out* to)
 {
     const auto& sparse = accessor.sparse;
-    const unsigned char* indices = viewData(model, sparse.indices.bufferView, std::size_t(sparse.indices.byteOffset));
-    const unsigned char* values = viewData(model, sparse.values.bufferView, std::size_t(sparse.values.byteOffset));
+    const unsigned char* indices =
+        viewData(model, sparse.indices.bufferView, static_cast<std::size_t>(sparse.indices.byteOffset));
+    const unsigned char* values =
+        viewData(model, sparse.values.bufferView, static_cast<std::size_t>(sparse.values.byteOffset));
     for (std::size_t i = 0; i < std::size_t(sparse.count); ++i, values += layout.columns * layout.columnBytes)
     {
-        const std::size_t element = sparseIndex(indices, sparse.indices.componentType, i);
+        const std::size_t element = indexAt(indices, componentBytes(sparse.indices.componentType), i);
         readElement<Stored>(values, layout, accessor.normalized, to + element * layout.rows * layout.columns);
     }
 }
@@ -141,8 +119,9 @@ void readAll(const tinygltf::Model& model, const tinygltf::Accessor& accessor, O
 template <typename Out>
 std::vector<Out> read(const tinygltf::Model& model, int index)
 {
-    assert(index >= 0 && std::size_t(index) < model.accessors.size() && "only accessors of the document are read");
-    const tinygltf::Accessor& accessor = model.accessors[std::size_t(index)];
+    assert(index >= 0 && static_cast<std::size_t>(index) < model.accessors.size() &&
+           "only accessors of the document are read");
+    const tinygltf::Accessor& accessor = elementOf(model.accessors, index);
     std::vector<Out> numbers(accessor.count * componentCount(accessor)); // no buffer view: zeros (section 3.6.2.3)
     switch (accessor.componentType)
     {
@@ -179,10 +158,17 @@ int addNumbers(tinygltf::Model& model, const std::vector<Number>& numbers, int t
     accessor.count = numbers.size() / componentCount(accessor);
     accessor.bufferView = addBufferView(model, std::move(bytes), 0);
     model.accessors.push_back(std::move(accessor));
-    return int(model.accessors.size() - 1);
+    return static_cast<int>(model.accessors.size() - 1);
 }
 
 } // namespace
+
+std::size_t indexAt(const unsigned char* indices, std::size_t bytes, std::size_t i)
+{
+    std::uint32_t index = 0; // little-endian, as glTF is
+    std::memcpy(&index, indices + i * bytes, bytes);
+    return index;
+}
 
 std::size_t componentCount(const tinygltf::Accessor& accessor)
 {
@@ -192,20 +178,10 @@ std::size_t componentCount(const tinygltf::Accessor& accessor)
 
 std::size_t componentBytes(int componentType)
 {
-    switch (componentType)
-    {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-        return 1;
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-        return 2;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-    case TINYGLTF_COMPONENT_TYPE_FLOAT:
-        return 4;
-    default:
-        return 0;
-    }
+    const bool isKnown =
+        componentType != TINYGLTF_COMPONENT_TYPE_INT && componentType != TINYGLTF_COMPONENT_TYPE_DOUBLE;
+    const int bytes = tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(componentType));
+    return isKnown && bytes > 0 ? static_cast<std::size_t>(bytes) : 0;
 }
 
 std::size_t elementBytes(const tinygltf::Accessor& accessor)
@@ -238,12 +214,12 @@ std::vector<std::uint32_t> readIntegers(const tinygltf::Model& model, int access
 int addBufferView(tinygltf::Model& model, std::vector<unsigned char> bytes, std::size_t stride)
 {
     tinygltf::BufferView view;
-    view.buffer = int(model.buffers.size());
+    view.buffer = static_cast<int>(model.buffers.size());
     view.byteLength = bytes.size();
     view.byteStride = stride;
     model.buffers.emplace_back().data = std::move(bytes);
     model.bufferViews.push_back(std::move(view));
-    return int(model.bufferViews.size() - 1);
+    return static_cast<int>(model.bufferViews.size() - 1);
 }
 
 int addAccessor(tinygltf::Model& model, const std::vector<float>& numbers, int type)

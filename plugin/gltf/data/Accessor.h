@@ -29,6 +29,9 @@ std::vector<float> readFloats(const tinygltf::Model& model, int accessor);
 /// For indices and joints: the integers as they are.
 std::vector<std::uint32_t> readIntegers(const tinygltf::Model& model, int accessor);
 
+/// One of packed indices of 1, 2 or 4 bytes.
+std::size_t indexAt(const unsigned char* indices, std::size_t bytes, std::size_t i);
+
 // Data of our own in a model: decompressed or mended. The file's buffers and accessors stay as they are, because other
 // elements may refer to them.
 

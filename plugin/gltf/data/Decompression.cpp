@@ -3,6 +3,7 @@
 
 #include "gltf/data/Accessor.h"
 #include "gltf/data/DracoMesh.h"
+#include "gltf/file/Elements.h"
 #include "gltf/file/Report.h"
 
 #include <meshoptimizer.h>
@@ -45,11 +46,12 @@ struct Compressed
     std::string_view filter;
 
     explicit Compressed(const JsonValue& json)
-        : buffer(std::size_t(json["buffer"].number())), byteLength(std::size_t(json["byteLength"].number())),
-          stride(std::size_t(json["byteStride"].number())), count(std::size_t(json["count"].number())),
-          mode(json["mode"].text())
+        : buffer(static_cast<std::size_t>(json["buffer"].number())),
+          byteLength(static_cast<std::size_t>(json["byteLength"].number())),
+          stride(static_cast<std::size_t>(json["byteStride"].number())),
+          count(static_cast<std::size_t>(json["count"].number())), mode(json["mode"].text())
     {
-        if (const JsonValue offset = json["byteOffset"]) byteOffset = std::size_t(offset.number());
+        if (const JsonValue offset = json["byteOffset"]) byteOffset = static_cast<std::size_t>(offset.number());
         if (const JsonValue given = json["filter"]) filter = given.text();
         if (filter == "NONE") filter = {};
     }
@@ -132,7 +134,7 @@ std::optional<Error> decompress(const Compressed& view, std::size_t index, const
     if (!budget.take(parent.byteLength)) return fault(name, budget.limitText(), std::to_string(parent.byteLength));
     Bytes out(parent.byteLength);
     if (!decode(view, source, out)) return fault(name, "data that meshoptimizer can decode", "other data");
-    parent.buffer = int(model.buffers.size());
+    parent.buffer = static_cast<int>(model.buffers.size());
     parent.byteOffset = 0;
     model.buffers.emplace_back().data = std::move(out);
     return std::nullopt;
@@ -142,7 +144,7 @@ bool hasPlainData(const Model& model, const tinygltf::Primitive& primitive)
 {
     return std::all_of(primitive.attributes.begin(), primitive.attributes.end(),
                        [&](const auto& attribute)
-                       { return model.accessors[std::size_t(attribute.second)].bufferView >= 0; });
+                       { return elementOf(model.accessors, attribute.second).bufferView >= 0; });
 }
 
 /// Decodes one primitive from its bit stream into accessors.
@@ -159,15 +161,16 @@ public:
     {
         if (_primitive.mode != TINYGLTF_MODE_TRIANGLES || _primitive.indices < 0)
             return fault(_name, "a primitive of indexed triangles", "mode " + std::to_string(_primitive.mode));
-        const std::size_t count = _model.accessors[std::size_t(_primitive.indices)].count;
-        const tinygltf::BufferView& view = _model.bufferViews[std::size_t(_extension["bufferView"].number())];
-        const unsigned char* const data = _model.buffers[std::size_t(view.buffer)].data.data() + view.byteOffset;
+        const std::size_t count = elementOf(_model.accessors, _primitive.indices).count;
+        const tinygltf::BufferView& view =
+            _model.bufferViews[static_cast<std::size_t>(_extension["bufferView"].number())];
+        const unsigned char* const data = elementOf(_model.buffers, view.buffer).data.data() + view.byteOffset;
         const Result<DracoMesh> mesh = DracoMesh::decode(data, view.byteLength, count / 3);
         if (!mesh) return Error{_name + ": " + mesh.error().message};
         if (!budget.take(bytesOf(mesh.value(), count))) return fault(_name, budget.limitText(), "more");
         for (const JsonValue& attribute : _extension["attributes"])
             if (std::optional<Error> error = replaceAttribute(mesh.value(), attribute)) return error;
-        tinygltf::Accessor indices = _model.accessors[std::size_t(_primitive.indices)];
+        tinygltf::Accessor indices = elementOf(_model.accessors, _primitive.indices);
         indices.componentType = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
         _primitive.indices = addCopy(indices, bytesOf(mesh.value().indices()));
         return std::nullopt;
@@ -184,7 +187,7 @@ private:
     {
         std::size_t bytes = indices * sizeof(std::uint32_t);
         for (const auto& attribute : _primitive.attributes)
-            bytes += mesh.vertices() * elementBytes(_model.accessors[std::size_t(attribute.second)]);
+            bytes += mesh.vertices() * elementBytes(elementOf(_model.accessors, attribute.second));
         return bytes;
     }
 
@@ -193,15 +196,14 @@ private:
         const std::string key(attribute.key());
         const auto found = _primitive.attributes.find(key);
         if (found == _primitive.attributes.end()) return std::nullopt; // the document rules have left it out
-        const tinygltf::Accessor accessor = _model.accessors[std::size_t(found->second)];
+        const tinygltf::Accessor accessor = elementOf(_model.accessors, found->second);
         const std::string name = _name + ".attributes." + printable(key);
         if (accessor.count != mesh.vertices())
             return fault(name,
-                         std::to_string(accessor.count) + " vertices as in " +
-                             elementName("accessors", std::size_t(found->second)),
+                         std::to_string(accessor.count) + " vertices as in " + elementName("accessors", found->second),
                          std::to_string(mesh.vertices()));
-        Result<std::vector<unsigned char>> bytes =
-            mesh.attribute(std::uint32_t(attribute.number()), componentCount(accessor), accessor.componentType);
+        Result<std::vector<unsigned char>> bytes = mesh.attribute(static_cast<std::uint32_t>(attribute.number()),
+                                                                  componentCount(accessor), accessor.componentType);
         if (!bytes) return Error{name + ": " + bytes.error().message};
         found->second = addCopy(accessor, std::move(bytes).value());
         return std::nullopt;
@@ -214,7 +216,7 @@ private:
         accessor.byteOffset = 0;
         accessor.sparse.isSparse = false;
         _model.accessors.push_back(std::move(accessor));
-        return int(_model.accessors.size() - 1);
+        return static_cast<int>(_model.accessors.size() - 1);
     }
 
     Model& _model;
@@ -230,7 +232,7 @@ std::optional<Error> decompressMeshopt(const JsonValue& bufferViews, MemoryBudge
     std::size_t i = 0;
     for (const JsonValue& bufferView : bufferViews)
     {
-        const bool hasFallback = !model.buffers[std::size_t(model.bufferViews[i].buffer)].data.empty();
+        const bool hasFallback = !elementOf(model.buffers, model.bufferViews[i].buffer).data.empty();
         for (const char* const extension : meshoptExtensions)
         {
             const JsonValue compression = bufferView["extensions"][extension];
@@ -249,24 +251,14 @@ std::optional<Error> decompressMeshopt(const JsonValue& bufferViews, MemoryBudge
 std::optional<Error> decompressDraco(const JsonValue& meshes, MemoryBudget& budget, Model& model)
 {
     const bool required = isRequired(model, "KHR_draco_mesh_compression");
-    std::size_t m = 0;
-    for (const JsonValue& mesh : meshes)
+    const auto decompressPrimitive = [&](const JsonValue& json, const PrimitiveName& name) -> std::optional<Error>
     {
-        std::size_t p = 0;
-        for (const JsonValue& json : mesh["primitives"])
-        {
-            const JsonValue extension = json["extensions"]["KHR_draco_mesh_compression"];
-            tinygltf::Primitive& primitive = model.meshes[m].primitives[p];
-            if (extension && (required || !hasPlainData(model, primitive)))
-                if (std::optional<Error> error =
-                        DracoPrimitive(model, primitive, extension, elementName("meshes", m, "primitives", p))
-                            .decompress(budget))
-                    return error;
-            ++p;
-        }
-        ++m;
-    }
-    return std::nullopt;
+        const JsonValue extension = json["extensions"]["KHR_draco_mesh_compression"];
+        tinygltf::Primitive& primitive = model.meshes[name.mesh].primitives[name.primitive];
+        if (!extension || (!required && hasPlainData(model, primitive))) return std::nullopt;
+        return DracoPrimitive(model, primitive, extension, name.text()).decompress(budget);
+    };
+    return forEachPrimitive(meshes, decompressPrimitive);
 }
 
 } // namespace osgGpuAnimation::gltf

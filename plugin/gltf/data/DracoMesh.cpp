@@ -22,11 +22,6 @@ namespace
 
 using Bytes = std::vector<unsigned char>;
 
-Error unexpected(const std::string& expected, const std::string& found)
-{
-    return Error{"expected " + expected + ", found " + found};
-}
-
 /// The number of triangles in the header; none if the stream has no header of version 2.2.
 std::optional<std::uint32_t> facesOfHeader(const char* data, std::size_t bytes)
 {
@@ -55,14 +50,14 @@ std::optional<std::uint32_t> facesOfHeader(const char* data, std::size_t bytes)
 template <typename Number>
 bool copyValues(const draco::Mesh& mesh, const draco::PointAttribute& attribute, Bytes& out)
 {
-    const std::size_t components = std::size_t(attribute.num_components());
+    const std::size_t components = static_cast<std::size_t>(attribute.num_components());
     Number values[4] = {};
     unsigned char* to = out.data();
     for (draco::PointIndex point(0); point < mesh.num_points(); ++point)
     {
         const draco::AttributeValueIndex value = attribute.mapped_index(point);
         if (value.value() >= attribute.size()) return false;
-        if (!attribute.ConvertValue<Number>(value, std::int8_t(components), values)) return false;
+        if (!attribute.ConvertValue<Number>(value, static_cast<std::int8_t>(components), values)) return false;
         std::memcpy(to, values, components * sizeof(Number));
         to += components * sizeof(Number);
     }
@@ -72,7 +67,8 @@ bool copyValues(const draco::Mesh& mesh, const draco::PointAttribute& attribute,
 template <typename Number>
 bool readValues(const draco::Mesh& mesh, const draco::PointAttribute& attribute, Bytes& out)
 {
-    out.resize(std::size_t(mesh.num_points()) * std::size_t(attribute.num_components()) * sizeof(Number));
+    out.resize(static_cast<std::size_t>(mesh.num_points()) * static_cast<std::size_t>(attribute.num_components()) *
+               sizeof(Number));
     return copyValues<Number>(mesh, attribute, out);
 }
 
@@ -138,7 +134,7 @@ Result<Bytes> DracoMesh::attribute(std::uint32_t uniqueId, std::size_t component
 {
     const draco::PointAttribute* const attribute = _mesh->GetAttributeByUniqueId(uniqueId);
     if (!attribute) return unexpected("an attribute of the Draco mesh", "number " + std::to_string(uniqueId));
-    if (components > 4 || std::size_t(attribute->num_components()) != components)
+    if (components > 4 || static_cast<std::size_t>(attribute->num_components()) != components)
         return unexpected(std::to_string(components) + " components in the Draco mesh",
                           std::to_string(attribute->num_components()));
     Bytes out;

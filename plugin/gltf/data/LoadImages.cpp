@@ -2,8 +2,7 @@
 #include "gltf/data/LoadImages.h"
 
 #include "gltf/data/Picture.h"
-#include "gltf/file/Report.h"
-#include "gltf/file/Uri.h"
+#include "gltf/file/Elements.h"
 
 #include <string>
 #include <string_view>
@@ -58,11 +57,11 @@ Result<Bytes> readFile(std::string_view uri, const ModelFolder& folder, MemoryBu
 
 Result<Bytes> readView(const tinygltf::Model& model, int index, MemoryBudget& budget)
 {
-    const tinygltf::BufferView& view = model.bufferViews[std::size_t(index)];
+    const tinygltf::BufferView& view = elementOf(model.bufferViews, index);
     if (!budget.take(view.byteLength)) return tooLarge(budget, view.byteLength);
-    const Bytes& data = model.buffers[std::size_t(view.buffer)].data;
-    const auto begin = data.begin() + std::ptrdiff_t(view.byteOffset);
-    return Bytes(begin, begin + std::ptrdiff_t(view.byteLength));
+    const Bytes& data = elementOf(model.buffers, view.buffer).data;
+    const auto begin = data.begin() + static_cast<std::ptrdiff_t>(view.byteOffset);
+    return Bytes(begin, begin + static_cast<std::ptrdiff_t>(view.byteLength));
 }
 
 /// The member that holds the bytes, for messages.
@@ -101,7 +100,7 @@ std::vector<bool> imagesOfOtherFormats(const JsonValue& document, const tinygltf
         for (const OtherFormat& format : otherFormats)
             if (const JsonValue source = texture["extensions"][format.extension]["source"])
             {
-                isOther[std::size_t(source.number())] = true;
+                isOther[static_cast<std::size_t>(source.number())] = true;
                 if (!hasPicture)
                     report.warn(elementName("textures", i) + ": its picture is " + format.name + " (" +
                                 std::string(format.extension) +
@@ -110,7 +109,7 @@ std::vector<bool> imagesOfOtherFormats(const JsonValue& document, const tinygltf
         ++i;
     }
     for (const tinygltf::Texture& texture : model.textures)
-        if (texture.source >= 0) isOther[std::size_t(texture.source)] = false;
+        if (texture.source >= 0) elementOf(isOther, texture.source) = false;
     return isOther;
 }
 
@@ -128,7 +127,7 @@ void loadImages(const JsonValue& document, const ModelFolder& folder, MemoryBudg
         image.as_is = true;
         const JsonValue uri = json["uri"];
         if (const JsonValue given = json["name"]) image.name = given.text();
-        if (const JsonValue view = json["bufferView"]) image.bufferView = int(view.number());
+        if (const JsonValue view = json["bufferView"]) image.bufferView = static_cast<int>(view.number());
         if (uri && !isDataUri(uri.text())) image.uri = uri.text();
         if (isOtherFormat[index]) continue;
         Result<Bytes> bytes = !uri                    ? readView(model, image.bufferView, budget)
@@ -142,8 +141,8 @@ void loadImages(const JsonValue& document, const ModelFolder& folder, MemoryBudg
         }
         image.image = std::move(bytes).value();
         image.mimeType = header.value().mimeType;
-        image.width = int(header.value().width);
-        image.height = int(header.value().height);
+        image.width = static_cast<int>(header.value().width);
+        image.height = static_cast<int>(header.value().height);
     }
 }
 

@@ -2,6 +2,7 @@
 #include "gltf/data/MaterialDescription.h"
 
 #include "gltf/data/MaterialMaps.h"
+#include "gltf/file/Elements.h"
 
 namespace osgGpuAnimation::gltf
 {
@@ -14,9 +15,9 @@ MaterialDescription::Map describeMap(const tinygltf::Model& model, const Materia
     const std::string member = map.member;
     MaterialDescription::Map description;
     description.use = member.substr(0, member.rfind("Texture"));
-    description.image = model.textures[static_cast<std::size_t>(map.texture)].source;
+    description.image = elementOf(model.textures, map.texture).source;
     if (description.image < 0) return description;
-    const tinygltf::Image& image = model.images[static_cast<std::size_t>(description.image)];
+    const tinygltf::Image& image = elementOf(model.images, description.image);
     if (image.image.empty()) return description;
     description.width = image.width;
     description.height = image.height;

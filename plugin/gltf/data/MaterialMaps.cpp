@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/data/MaterialMaps.h"
 
-#include "gltf/document/AnimationPointers.h"
+#include "gltf/data/AnimationPointers.h"
+#include "gltf/file/Elements.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace osgGpuAnimation::gltf
 {
@@ -110,7 +110,7 @@ private:
         const auto known = std::find(all.begin(), all.end(), coordinates);
         const int number = static_cast<int>(known - all.begin());
         if (known != all.end()) return number;
-        if (all.size() == MaterialMaps::mostCoordinates) return -1;
+        if (all.size() == MaterialMaps::maxCoordinates) return -1;
         all.push_back(coordinates);
         return number;
     }
@@ -183,8 +183,7 @@ const MaterialMaps& MapsOfMaterials::of(int material)
         const std::string offset = texture + "/extensions/KHR_texture_transform/offset";
         return !valueAtRest(_model, "/materials/" + std::to_string(material) + '/' + offset).empty();
     };
-    if (isNew && material >= 0)
-        known->second = mapsOf(_model.materials[static_cast<std::size_t>(material)], _allMaps, isAnimated);
+    if (isNew && material >= 0) known->second = mapsOf(elementOf(_model.materials, material), _allMaps, isAnimated);
     return known->second;
 }
 
@@ -194,7 +193,7 @@ osg::Vec4 baseColorOf(const tinygltf::Material& material)
     osg::Vec4 color(1.0f, 1.0f, 1.0f, 1.0f);
     for (int i = 0; i < 4; ++i)
         if (!converted.IsObject())
-            color[i] = static_cast<float>(material.pbrMetallicRoughness.baseColorFactor[static_cast<std::size_t>(i)]);
+            color[i] = static_cast<float>(elementOf(material.pbrMetallicRoughness.baseColorFactor, i));
         else if (converted.Has("diffuseFactor"))
             color[i] = static_cast<float>(converted.Get("diffuseFactor").Get(i).GetNumberAsDouble());
     return color;

@@ -40,10 +40,10 @@ struct MaterialMap
 /// The maps of a material and the different texture coordinates that they read.
 struct MaterialMaps
 {
-    static constexpr std::size_t mostCoordinates = 3; ///< a vertex has that many; earlier maps come first
+    static constexpr std::size_t maxCoordinates = 3; ///< a vertex has that many; earlier maps come first
 
     std::vector<MaterialMap> maps;               ///< the base colour first
-    std::vector<TextureCoordinates> coordinates; ///< at most mostCoordinates; number 0 is that of the base colour
+    std::vector<TextureCoordinates> coordinates; ///< at most maxCoordinates; number 0 is that of the base colour
 
     /// The map at that place, or null.
     const MaterialMap* find(PbrMaterial::Map PbrMaterial::*place) const;

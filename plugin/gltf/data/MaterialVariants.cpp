@@ -2,6 +2,7 @@
 #include "gltf/data/MaterialVariants.h"
 
 #include "gltf/data/UniqueNames.h"
+#include "gltf/file/Elements.h"
 
 #include <algorithm>
 
@@ -68,7 +69,7 @@ PrimitiveMaterials materialsOf(const tinygltf::Model& model, const tinygltf::Pri
 {
     PrimitiveMaterials materials;
     const auto addMaterial = [&](int index)
-    { return add(model.materials[static_cast<std::size_t>(index)], maps.of(index), materials); };
+    { return add(elementOf(model.materials, index), maps.of(index), materials); };
     materials.own = primitive.material;
     if (materials.own >= 0) addMaterial(materials.own);
     const tinygltf::Value& mappings = memberOf(primitive.extensions, "mappings");

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/data/Picture.h"
 
+#include "gltf/file/Report.h"
+
 #include <osg/Endian>
 #include <osg/ValueObject>
 #include <png.h>
@@ -10,7 +12,6 @@
 #include <algorithm>
 #include <csetjmp>
 #include <cstring>
-#include <memory>
 #include <string_view>
 
 namespace osgGpuAnimation::gltf
@@ -60,11 +61,6 @@ const char* formatText(const Bytes& bytes)
     return "other data";
 }
 
-Error unexpected(const std::string& expected, const std::string& found)
-{
-    return Error{"expected " + expected + ", found " + found};
-}
-
 std::string sizeText(std::uint32_t width, std::uint32_t height)
 {
     return std::to_string(width) + " x " + std::to_string(height);
@@ -72,14 +68,14 @@ std::string sizeText(std::uint32_t width, std::uint32_t height)
 
 /// The header, if a texture may have its size and the data is long enough for it.
 Result<PictureHeader> checkSize(const char* mimeType, std::uint32_t width, std::uint32_t height,
-                                std::uint64_t mostPixels, std::size_t bytesOfPixel)
+                                std::uint64_t maxPixels, std::size_t bytesOfPixel)
 {
-    const std::uint32_t most = PictureHeader::maxPixelsPerSide;
-    if (width < 1 || height < 1 || width > most || height > most)
-        return unexpected("a picture from 1 x 1 to " + sizeText(most, most) + " pixels", sizeText(width, height));
-    const std::uint64_t pixels = std::uint64_t(width) * height;
-    if (pixels > mostPixels) return unexpected("data for a picture of " + sizeText(width, height), "far too little");
-    return PictureHeader{mimeType, width, height, std::size_t(pixels) * bytesOfPixel};
+    const std::uint32_t max = PictureHeader::maxPixelsPerSide;
+    if (width < 1 || height < 1 || width > max || height > max)
+        return unexpected("a picture from 1 x 1 to " + sizeText(max, max) + " pixels", sizeText(width, height));
+    const std::uint64_t pixels = static_cast<std::uint64_t>(width) * height;
+    if (pixels > maxPixels) return unexpected("data for a picture of " + sizeText(width, height), "far too little");
+    return PictureHeader{mimeType, width, height, static_cast<std::size_t>(pixels) * bytesOfPixel};
 }
 
 osg::ref_ptr<osg::Image> newImage(std::size_t width, std::size_t height, GLenum format, GLenum type)
@@ -94,7 +90,8 @@ osg::ref_ptr<osg::Image> newImage(std::size_t width, std::size_t height, GLenum 
 
 std::uint32_t bigEndian(const unsigned char* bytes)
 {
-    return std::uint32_t(bytes[0]) << 24 | std::uint32_t(bytes[1]) << 16 | std::uint32_t(bytes[2]) << 8 | bytes[3];
+    return static_cast<std::uint32_t>(bytes[0]) << 24 | static_cast<std::uint32_t>(bytes[1]) << 16 |
+           static_cast<std::uint32_t>(bytes[2]) << 8 | bytes[3];
 }
 
 /// Bytes of all IDAT chunks; the chunks must lead up to IEND (PNG specification, section 5.3).
@@ -125,8 +122,8 @@ Result<PictureHeader> readPngHeader(const Bytes& bytes)
     const std::size_t channels = bytes[25] < 7 ? channelsOfType[bytes[25]] : 0;
     if (channels == 0 || depth < 1 || depth > 16) return unexpected("a PNG colour type and depth", "another");
     // Deflate compresses to a 1032nd at best.
-    const std::uint64_t mostPixels = std::uint64_t(data.value()) * 1032 * 8 / (channels * depth);
-    return checkSize("image/png", bigEndian(&bytes[16]), bigEndian(&bytes[20]), mostPixels, depth == 16 ? 8 : 4);
+    const std::uint64_t maxPixels = static_cast<std::uint64_t>(data.value()) * 1032 * 8 / (channels * depth);
+    return checkSize("image/png", bigEndian(&bytes[16]), bigEndian(&bytes[20]), maxPixels, depth == 16 ? 8 : 4);
 }
 
 /// libpng reports errors by longjmp: the two functions that call setjmp hold no objects with destructors.
@@ -229,15 +226,15 @@ public:
     JpegReader(const JpegReader&) = delete;
 
     bool hasHeader() const { return _width > 0 && _height > 0; }
-    std::size_t width() const { return std::size_t(_width); }
-    std::size_t height() const { return std::size_t(_height); }
+    std::size_t width() const { return static_cast<std::size_t>(_width); }
+    std::size_t height() const { return static_cast<std::size_t>(_height); }
     bool isGrey() const { return _space == TJCS_GRAY; }
 
     bool readRows(osg::Image& image)
     {
-        const int result =
-            tjDecompress2(_turbo, _bytes.data(), _bytes.size(), image.data(), _width, int(image.getRowSizeInBytes()),
-                          _height, isGrey() ? TJPF_GRAY : TJPF_RGB, TJFLAG_BOTTOMUP | TJFLAG_LIMITSCANS);
+        const int result = tjDecompress2(_turbo, _bytes.data(), _bytes.size(), image.data(), _width,
+                                         static_cast<int>(image.getRowSizeInBytes()), _height,
+                                         isGrey() ? TJPF_GRAY : TJPF_RGB, TJFLAG_BOTTOMUP | TJFLAG_LIMITSCANS);
         return result == 0 ||
                tjGetErrorCode(_turbo) == TJERR_WARNING; // a cut-off file: decodes the pixels before the cut
     }
@@ -264,13 +261,13 @@ Result<PictureHeader> readJpegHeader(const Bytes& bytes)
     const JpegReader reader(bytes);
     if (!reader.hasHeader()) return unexpected("a JPEG header", "one that is cut off or damaged");
     // A block of 8 x 8 takes one bit at least.
-    const std::uint64_t mostPixels = std::uint64_t(bytes.size()) * 8 * 64;
-    Result<PictureHeader> header =
-        checkSize("image/jpeg", std::uint32_t(reader.width()), std::uint32_t(reader.height()), mostPixels, 4);
+    const std::uint64_t maxPixels = static_cast<std::uint64_t>(bytes.size()) * 8 * 64;
+    Result<PictureHeader> header = checkSize("image/jpeg", static_cast<std::uint32_t>(reader.width()),
+                                             static_cast<std::uint32_t>(reader.height()), maxPixels, 4);
     // Each scan visits all pixels and may cost a few bytes: libjpeg-turbo's limit of 500 scans would allow minutes for
     // a large picture. Encoders write about ten.
-    constexpr std::uint64_t mostVisits = 16ull * PictureHeader::maxPixelsPerSide * PictureHeader::maxPixelsPerSide;
-    if (header && scansOf(bytes) * reader.width() * reader.height() > mostVisits)
+    constexpr std::uint64_t maxVisits = 16ull * PictureHeader::maxPixelsPerSide * PictureHeader::maxPixelsPerSide;
+    if (header && scansOf(bytes) * reader.width() * reader.height() > maxVisits)
         return unexpected("a JPEG of few scans", std::to_string(scansOf(bytes)));
     return header;
 }
@@ -288,7 +285,8 @@ osg::ref_ptr<osg::Image> decodeJpeg(const Bytes& bytes)
 
 std::uint32_t littleEndian(const unsigned char* bytes)
 {
-    return std::uint32_t(bytes[3]) << 24 | std::uint32_t(bytes[2]) << 16 | std::uint32_t(bytes[1]) << 8 | bytes[0];
+    return static_cast<std::uint32_t>(bytes[3]) << 24 | static_cast<std::uint32_t>(bytes[2]) << 16 |
+           static_cast<std::uint32_t>(bytes[1]) << 8 | bytes[0];
 }
 
 Result<PictureHeader> readWebpHeader(const Bytes& bytes)
@@ -300,8 +298,10 @@ Result<PictureHeader> readWebpHeader(const Bytes& bytes)
         return unexpected("a WebP header", "one that is cut off or damaged");
     if (features.has_animation != 0) return unexpected("a WebP of one picture", "an animation");
     // Lossless data holds any number of pixels of one colour in 40 bytes; libwebp writes lossy ones at 600 a byte.
-    const std::uint64_t mostPixels = std::max<std::uint64_t>(4096 * 4096, std::uint64_t(bytes.size()) * 1032);
-    return checkSize("image/webp", std::uint32_t(features.width), std::uint32_t(features.height), mostPixels, 4);
+    const std::uint64_t maxPixels =
+        std::max<std::uint64_t>(4096 * 4096, static_cast<std::uint64_t>(bytes.size()) * 1032);
+    return checkSize("image/webp", static_cast<std::uint32_t>(features.width),
+                     static_cast<std::uint32_t>(features.height), maxPixels, 4);
 }
 
 osg::ref_ptr<osg::Image> decodeWebp(const Bytes& bytes)
@@ -310,13 +310,14 @@ osg::ref_ptr<osg::Image> decodeWebp(const Bytes& bytes)
     if (!WebPInitDecoderConfig(&config) || WebPGetFeatures(bytes.data(), bytes.size(), &config.input) != VP8_STATUS_OK)
         return nullptr;
     const bool hasAlpha = config.input.has_alpha != 0;
-    const osg::ref_ptr<osg::Image> image = newImage(std::size_t(config.input.width), std::size_t(config.input.height),
-                                                    hasAlpha ? GL_RGBA : GL_RGB, GL_UNSIGNED_BYTE);
+    const osg::ref_ptr<osg::Image> image =
+        newImage(static_cast<std::size_t>(config.input.width), static_cast<std::size_t>(config.input.height),
+                 hasAlpha ? GL_RGBA : GL_RGB, GL_UNSIGNED_BYTE);
     if (!image->data()) return nullptr;
     config.options.flip = 1; // the first row at the bottom
     config.output.colorspace = hasAlpha ? MODE_RGBA : MODE_RGB;
     config.output.is_external_memory = 1;
-    config.output.u.RGBA = {image->data(), int(image->getRowSizeInBytes()), image->getTotalSizeInBytes()};
+    config.output.u.RGBA = {image->data(), static_cast<int>(image->getRowSizeInBytes()), image->getTotalSizeInBytes()};
     return WebPDecode(bytes.data(), bytes.size(), &config) == VP8_STATUS_OK ? image : nullptr;
 }
 

@@ -24,7 +24,7 @@ public:
     /// texture of that name alone.
     explicit TextureCoordinates(const tinygltf::TextureInfo& texture, std::string animated = "");
 
-    int set() const { return _set; } ///< n of TEXCOORD_n, below AttributeSemantic::mostSets
+    int set() const { return _set; } ///< n of TEXCOORD_n, below AttributeSemantic::maxSets
     osg::Vec2 transformed(const osg::Vec2& coordinates) const;
     bool operator==(const TextureCoordinates& other) const
     {

@@ -2,6 +2,7 @@
 #include "gltf/data/VertexAttributes.h"
 
 #include "gltf/data/Accessor.h"
+#include "gltf/file/Elements.h"
 
 #include <osgGpuAnimation/looks/PbrMaterial.h>
 
@@ -30,7 +31,7 @@ std::vector<osg::Vec4> readLinearColors(const tinygltf::Model& model, const Attr
     const int accessor = findAccessor(attributes, "COLOR_0");
     if (accessor < 0) return colors;
     const std::vector<float> numbers = readFloats(model, accessor);
-    const std::size_t components = componentCount(model.accessors[static_cast<std::size_t>(accessor)]);
+    const std::size_t components = componentCount(elementOf(model.accessors, accessor));
     colors.reserve(numbers.size() / components);
     for (std::size_t i = 0; i + components <= numbers.size(); i += components)
         colors.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2], components == 4 ? numbers[i + 3] : otherwise);
@@ -122,6 +123,13 @@ std::vector<MorphTarget> readMorphTargets(const tinygltf::Model& model, const ti
                            coordinates ? readCoordinateChanges(model, target, *coordinates) : nullptr,
                            withTangents ? readVectors(model, target, "TANGENT") : nullptr});
     return targets;
+}
+
+std::size_t wholeCount(int mode, std::size_t count)
+{
+    constexpr std::size_t minCount[] = {1, 2, 2, 2, 3, 3, 3}, step[] = {1, 2, 1, 1, 3, 1, 1};
+    const std::size_t whole = count - count % elementOf(step, mode);
+    return whole < elementOf(minCount, mode) ? 0 : whole;
 }
 
 std::size_t influenceSetCount(const tinygltf::Primitive& primitive)

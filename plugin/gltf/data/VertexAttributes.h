@@ -38,6 +38,9 @@ osg::ref_ptr<osg::Vec4Array> readTangents(const tinygltf::Model& model, const ti
 std::vector<MorphTarget> readMorphTargets(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
                                           const TextureCoordinates* coordinates, bool withTangents);
 
+/// Of these indices or vertices, the number that form whole points, lines or triangles. mode: of a primitive.
+std::size_t wholeCount(int mode, std::size_t count);
+
 /// The number of consecutive JOINTS_n with WEIGHTS_n of the primitive, from n = 0.
 std::size_t influenceSetCount(const tinygltf::Primitive& primitive);
 

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/document/DocumentRules.h"
 
-#include "gltf/data/AttributeSemantic.h"
-#include "gltf/document/VariantRules.h"
-#include "gltf/document/ViewRules.h"
-#include "gltf/file/Report.h"
+#include "gltf/document/AttributeSemantic.h"
 
 #include <algorithm>
 #include <array>
@@ -25,7 +22,7 @@ namespace
 
 using Kind = AttributeSemantic::Kind;
 
-const std::size_t mostDracoAttributes = 256; // Draco's own limit
+const std::size_t maxDracoAttributes = 256; // Draco's own limit
 
 bool isMorphable(Kind kind)
 {
@@ -55,18 +52,18 @@ void leaveOutUnknown(const JsonValue& attributes, const PrimitiveName& name, int
 
 void leaveOutGaps(const JsonValue& attributes, const PrimitiveName& name, Report& report)
 {
-    std::array<std::bitset<AttributeSemantic::mostSets>, std::size_t(Kind::Custom) + 1> sets;
+    std::array<std::bitset<AttributeSemantic::maxSets>, static_cast<std::size_t>(Kind::Custom) + 1> sets;
     for (const JsonValue& attribute : attributes)
     {
         const AttributeSemantic semantic = *AttributeSemantic::parse(attribute.key());
-        sets[std::size_t(semantic.kind)].set(std::size_t(semantic.set));
+        sets[static_cast<std::size_t>(semantic.kind)].set(static_cast<std::size_t>(semantic.set));
     }
     for (const JsonValue& attribute : attributes)
     {
         const AttributeSemantic semantic = *AttributeSemantic::parse(attribute.key());
         if (semantic.kind == Kind::TexCoord) continue; // textures name their set
         for (int before = 0; before < semantic.set; ++before)
-            if (!sets[std::size_t(semantic.kind)].test(std::size_t(before)))
+            if (!sets[static_cast<std::size_t>(semantic.kind)].test(static_cast<std::size_t>(before)))
             {
                 leaveOut(attributes, attribute, name.attributes(), "the sets before it are missing", report);
                 break;
@@ -103,8 +100,8 @@ std::optional<Error> checkDraco(const JsonValue& primitive, const PrimitiveName&
     if (!attributes) return std::nullopt;
     const std::string place = name.text() + ".extensions.KHR_draco_mesh_compression.attributes";
     if (!attributes.is(JsonTree::Type::Object)) return fault(place, "an object", attributes.description());
-    if (attributes.size() > mostDracoAttributes)
-        return fault(place, "at most " + std::to_string(mostDracoAttributes) + " attributes",
+    if (attributes.size() > maxDracoAttributes)
+        return fault(place, "at most " + std::to_string(maxDracoAttributes) + " attributes",
                      std::to_string(attributes.size()));
     for (const JsonValue& attribute : attributes)
     {
@@ -170,7 +167,8 @@ void checkTarget(const JsonValue& channel, std::size_t animation, std::size_t in
                     "; channel ignored");
         return target.dropFrom(channel);
     }
-    const std::uint64_t property = std::uint64_t(node.number()) * std::size(paths) + std::uint64_t(known - paths);
+    const std::uint64_t property =
+        static_cast<std::uint64_t>(node.number()) * std::size(paths) + static_cast<std::uint64_t>(known - paths);
     if (animated.insert(property).second) return;
     report.warn(name() + ": another channel animates " + std::string(path.text()) + " of the node; channel ignored");
     target.dropFrom(channel);
@@ -189,7 +187,7 @@ std::optional<Error> checkAnimationRules(const JsonValue& animations, Report& re
         for (const JsonValue& channel : animation["channels"])
         {
             const JsonValue sampler = channel["sampler"];
-            if (sampler.number() >= double(samplers))
+            if (sampler.number() >= static_cast<double>(samplers))
                 return fault(elementName("animations", i, "channels", c) + ".sampler",
                              "an index below " + std::to_string(samplers) + " of the animation's samplers",
                              sampler.description());
@@ -310,11 +308,11 @@ std::optional<Error> checkVersion(const JsonValue& asset)
     const JsonValue version = asset["version"];
     const auto parsed = parseVersion(version.text());
     if (!parsed || parsed->first != 2) return fault("asset.version", "glTF 2.x", version.description());
-    const JsonValue least = asset["minVersion"];
-    if (!least) return std::nullopt;
-    const auto parsedLeast = parseVersion(least.text());
+    const JsonValue min = asset["minVersion"];
+    if (!min) return std::nullopt;
+    const auto parsedLeast = parseVersion(min.text());
     if (!parsedLeast || *parsedLeast > std::pair(2, 0))
-        return fault("asset.minVersion", "a version that glTF 2.0 satisfies", least.description());
+        return fault("asset.minVersion", "a version that glTF 2.0 satisfies", min.description());
     return std::nullopt;
 }
 

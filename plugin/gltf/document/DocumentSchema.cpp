@@ -20,19 +20,19 @@ namespace
 
 using namespace schema;
 
-constexpr SchemaRule name = text("name").orLeaveOut();
+constexpr SchemaRule name = text("name").dropIfInvalid();
 constexpr SchemaRule extras = rule("extras", Kind::Any); // of elements whose extras may be read: they can be large
 
 // ------------------------------------------------------------------------------------------- buffers and accessors
 
 constexpr SchemaRule sparseIndices[] = {index("bufferView", "bufferViews").required(),
-                                        integer("byteOffset").upTo(largestInt),
+                                        integer("byteOffset").upTo(maxInt),
                                         code("componentType", "5121 5123 5125").required()};
 
 constexpr SchemaRule sparseValues[] = {index("bufferView", "bufferViews").required(),
-                                       integer("byteOffset").upTo(largestInt)};
+                                       integer("byteOffset").upTo(maxInt)};
 
-constexpr SchemaRule sparse[] = {integer("count").from(1).upTo(largestInt).required(),
+constexpr SchemaRule sparse[] = {integer("count").from(1).upTo(maxInt).required(),
                                  object("indices", sparseIndices).required(),
                                  object("values", sparseValues).required()};
 
@@ -42,8 +42,8 @@ constexpr SchemaRule accessor[] = {index("bufferView", "bufferViews"),
                                    rule("normalized", Kind::Boolean),
                                    integer("count").from(1).required(),
                                    choice("type", "SCALAR VEC2 VEC3 VEC4 MAT2 MAT3 MAT4").required(),
-                                   number("min").list(1, 16).orLeaveOut(),
-                                   number("max").list(1, 16).orLeaveOut(),
+                                   number("min").list(1, 16).dropIfInvalid(),
+                                   number("max").list(1, 16).dropIfInvalid(),
                                    object("sparse", sparse),
                                    name};
 
@@ -66,110 +66,112 @@ constexpr SchemaRule bufferViewExtensions[] = {object("EXT_meshopt_compression",
                                                object("KHR_meshopt_compression", meshopt)};
 
 constexpr SchemaRule bufferView[] = {
-    index("buffer", "buffers").required(),      integer("byteOffset"),
-    integer("byteLength").from(1).required(),   integer("byteStride").from(4).upTo(252).inStepsOf(4),
-    code("target", "34962 34963").orLeaveOut(), name,
+    index("buffer", "buffers").required(),         integer("byteOffset"),
+    integer("byteLength").from(1).required(),      integer("byteStride").from(4).upTo(252).inStepsOf(4),
+    code("target", "34962 34963").dropIfInvalid(), name,
     object("extensions", bufferViewExtensions)};
 
 // ------------------------------------------------------------------------------------------------------- animations
 
-constexpr SchemaRule pointer[] = {text("pointer").required().orLeaveOut()};
-constexpr SchemaRule targetExtensions[] = {object("KHR_animation_pointer", pointer).orLeaveOut()};
-constexpr SchemaRule target[] = {index("node", "nodes"), text("path").required().orLeaveOut(),
-                                 object("extensions", targetExtensions).orLeaveOut()};
+constexpr SchemaRule pointer[] = {text("pointer").required().dropIfInvalid()};
+constexpr SchemaRule targetExtensions[] = {object("KHR_animation_pointer", pointer).dropIfInvalid()};
+constexpr SchemaRule target[] = {index("node", "nodes"), text("path").required().dropIfInvalid(),
+                                 object("extensions", targetExtensions).dropIfInvalid()};
 
 // checkDocumentRules() compares the index with the samplers of the animation.
-constexpr SchemaRule channel[] = {integer("sampler").upTo(largestInt).required(),
-                                  object("target", target).required().orLeaveOut()};
+constexpr SchemaRule channel[] = {integer("sampler").upTo(maxInt).required(),
+                                  object("target", target).required().dropIfInvalid()};
 
 constexpr SchemaRule animationSampler[] = {index("input", "accessors").required(),
-                                           choice("interpolation", "LINEAR STEP CUBICSPLINE").orLeaveOut(),
+                                           choice("interpolation", "LINEAR STEP CUBICSPLINE").dropIfInvalid(),
                                            index("output", "accessors").required()};
 
-constexpr SchemaRule animation[] = {object("channels", channel).list().required().orLeaveOut(),
+constexpr SchemaRule animation[] = {object("channels", channel).list().required().dropIfInvalid(),
                                     object("samplers", animationSampler).list().required(), name, extras};
 
 // ---------------------------------------------------------------------------------------------- images and materials
 
-constexpr SchemaRule image[] = {text("uri"), text("mimeType").orLeaveOut(), index("bufferView", "bufferViews"), name};
+constexpr SchemaRule image[] = {text("uri"), text("mimeType").dropIfInvalid(), index("bufferView", "bufferViews"),
+                                name};
 
 constexpr SchemaRule sampler[] = {
-    code("magFilter", "9728 9729").orLeaveOut(), code("minFilter", "9728 9729 9984 9985 9986 9987").orLeaveOut(),
-    code("wrapS", "33071 33648 10497").orLeaveOut(), code("wrapT", "33071 33648 10497").orLeaveOut(), name};
+    code("magFilter", "9728 9729").dropIfInvalid(), code("minFilter", "9728 9729 9984 9985 9986 9987").dropIfInvalid(),
+    code("wrapS", "33071 33648 10497").dropIfInvalid(), code("wrapT", "33071 33648 10497").dropIfInvalid(), name};
 
-constexpr SchemaRule otherSource[] = {index("source", "images").orLeaveOut()};
+constexpr SchemaRule otherSource[] = {index("source", "images").dropIfInvalid()};
 constexpr SchemaRule otherSources[] = {
-    object("EXT_texture_webp", otherSource).orLeaveOut(), object("KHR_texture_basisu", otherSource).orLeaveOut(),
-    object("MSFT_texture_dds", otherSource).orLeaveOut(), object("EXT_texture_avif", otherSource).orLeaveOut()};
+    object("EXT_texture_webp", otherSource).dropIfInvalid(), object("KHR_texture_basisu", otherSource).dropIfInvalid(),
+    object("MSFT_texture_dds", otherSource).dropIfInvalid(), object("EXT_texture_avif", otherSource).dropIfInvalid()};
 
 constexpr SchemaRule texture[] = {index("sampler", "samplers"), index("source", "images"), name,
-                                  object("extensions", otherSources).orLeaveOut()};
+                                  object("extensions", otherSources).dropIfInvalid()};
 
 // More sets than any file has; a set is an array slot of OSG's geometries.
-constexpr SchemaRule texCoord = integer("texCoord").upTo(31).orLeaveOut();
+constexpr SchemaRule texCoord = integer("texCoord").upTo(31).dropIfInvalid();
 
-constexpr SchemaRule textureTransform[] = {number("offset").list(2, 2).orLeaveOut(), number("rotation").orLeaveOut(),
-                                           number("scale").list(2, 2).orLeaveOut(), texCoord};
-constexpr SchemaRule textureExtensions[] = {object("KHR_texture_transform", textureTransform).orLeaveOut()};
+constexpr SchemaRule textureTransform[] = {number("offset").list(2, 2).dropIfInvalid(),
+                                           number("rotation").dropIfInvalid(),
+                                           number("scale").list(2, 2).dropIfInvalid(), texCoord};
+constexpr SchemaRule textureExtensions[] = {object("KHR_texture_transform", textureTransform).dropIfInvalid()};
 
 // A fault in a material costs its factor or map alone.
-constexpr SchemaRule textureIndex = index("index", "textures").required().orLeaveOut();
-constexpr SchemaRule textureInfoExtensions = object("extensions", textureExtensions).orLeaveOut();
+constexpr SchemaRule textureIndex = index("index", "textures").required().dropIfInvalid();
+constexpr SchemaRule textureInfoExtensions = object("extensions", textureExtensions).dropIfInvalid();
 
 constexpr SchemaRule textureInfo[] = {textureIndex, texCoord, textureInfoExtensions};
-constexpr SchemaRule normalTexture[] = {textureIndex, texCoord, number("scale").orLeaveOut(), textureInfoExtensions};
-constexpr SchemaRule occlusionTexture[] = {textureIndex, texCoord, number("strength").orLeaveOut().clamped(0, 1),
+constexpr SchemaRule normalTexture[] = {textureIndex, texCoord, number("scale").dropIfInvalid(), textureInfoExtensions};
+constexpr SchemaRule occlusionTexture[] = {textureIndex, texCoord, number("strength").dropIfInvalid().clamped(0, 1),
                                            textureInfoExtensions};
 constexpr SchemaRule map(std::string_view name)
 {
-    return object(name, textureInfo).orLeaveOut();
+    return object(name, textureInfo).dropIfInvalid();
 }
 
 constexpr SchemaRule metallicRoughness[] = {
-    number("baseColorFactor").list(4, 4).orLeaveOut().clamped(0, 1), map("baseColorTexture"),
-    number("metallicFactor").orLeaveOut().clamped(0, 1), number("roughnessFactor").orLeaveOut().clamped(0, 1),
+    number("baseColorFactor").list(4, 4).dropIfInvalid().clamped(0, 1), map("baseColorTexture"),
+    number("metallicFactor").dropIfInvalid().clamped(0, 1), number("roughnessFactor").dropIfInvalid().clamped(0, 1),
     map("metallicRoughnessTexture")};
 
-constexpr SchemaRule emissiveStrength[] = {number("emissiveStrength").from(0).orLeaveOut()};
+constexpr SchemaRule emissiveStrength[] = {number("emissiveStrength").from(0).dropIfInvalid()};
 constexpr SchemaRule unit(std::string_view name)
 {
-    return number(name).clamped(0, 1).orLeaveOut();
+    return number(name).clamped(0, 1).dropIfInvalid();
 }
-constexpr SchemaRule ior[] = {number("ior").from(0).orLeaveOut()};
+constexpr SchemaRule ior[] = {number("ior").from(0).dropIfInvalid()};
 constexpr SchemaRule specular[] = {unit("specularFactor"), map("specularTexture"),
-                                   number("specularColorFactor").list(3, 3).from(0).orLeaveOut(),
+                                   number("specularColorFactor").list(3, 3).from(0).dropIfInvalid(),
                                    map("specularColorTexture")};
 constexpr SchemaRule clearcoat[] = {unit("clearcoatFactor"), map("clearcoatTexture"), unit("clearcoatRoughnessFactor"),
                                     map("clearcoatRoughnessTexture"),
-                                    object("clearcoatNormalTexture", normalTexture).orLeaveOut()};
-constexpr SchemaRule sheen[] = {number("sheenColorFactor").list(3, 3).clamped(0, 1).orLeaveOut(),
+                                    object("clearcoatNormalTexture", normalTexture).dropIfInvalid()};
+constexpr SchemaRule sheen[] = {number("sheenColorFactor").list(3, 3).clamped(0, 1).dropIfInvalid(),
                                 map("sheenColorTexture"), unit("sheenRoughnessFactor"), map("sheenRoughnessTexture")};
 constexpr SchemaRule transmission[] = {unit("transmissionFactor"), map("transmissionTexture")};
-constexpr SchemaRule specularGlossiness[] = {number("diffuseFactor").list(4, 4).clamped(0, 1).orLeaveOut(),
+constexpr SchemaRule specularGlossiness[] = {number("diffuseFactor").list(4, 4).clamped(0, 1).dropIfInvalid(),
                                              map("diffuseTexture"),
-                                             number("specularFactor").list(3, 3).clamped(0, 1).orLeaveOut(),
+                                             number("specularFactor").list(3, 3).clamped(0, 1).dropIfInvalid(),
                                              unit("glossinessFactor"), map("specularGlossinessTexture")};
 constexpr SchemaRule materialExtensions[] = {
-    rule("MSFT_lod", Kind::Object).orLeaveOut(), // not read: validateLods() notes it
-    rule("KHR_materials_unlit", Kind::Object).orLeaveOut(),
-    object("KHR_materials_emissive_strength", emissiveStrength).orLeaveOut(),
-    object("KHR_materials_ior", ior).orLeaveOut(),
-    object("KHR_materials_specular", specular).orLeaveOut(),
-    object("KHR_materials_clearcoat", clearcoat).orLeaveOut(),
-    object("KHR_materials_sheen", sheen).orLeaveOut(),
-    object("KHR_materials_transmission", transmission).orLeaveOut(),
-    object("KHR_materials_pbrSpecularGlossiness", specularGlossiness).orLeaveOut()};
+    rule("MSFT_lod", Kind::Object).dropIfInvalid(), // not read: validateLods() notes it
+    rule("KHR_materials_unlit", Kind::Object).dropIfInvalid(),
+    object("KHR_materials_emissive_strength", emissiveStrength).dropIfInvalid(),
+    object("KHR_materials_ior", ior).dropIfInvalid(),
+    object("KHR_materials_specular", specular).dropIfInvalid(),
+    object("KHR_materials_clearcoat", clearcoat).dropIfInvalid(),
+    object("KHR_materials_sheen", sheen).dropIfInvalid(),
+    object("KHR_materials_transmission", transmission).dropIfInvalid(),
+    object("KHR_materials_pbrSpecularGlossiness", specularGlossiness).dropIfInvalid()};
 
-constexpr SchemaRule material[] = {object("pbrMetallicRoughness", metallicRoughness).orLeaveOut(),
-                                   object("normalTexture", normalTexture).orLeaveOut(),
-                                   object("occlusionTexture", occlusionTexture).orLeaveOut(),
+constexpr SchemaRule material[] = {object("pbrMetallicRoughness", metallicRoughness).dropIfInvalid(),
+                                   object("normalTexture", normalTexture).dropIfInvalid(),
+                                   object("occlusionTexture", occlusionTexture).dropIfInvalid(),
                                    map("emissiveTexture"),
-                                   number("emissiveFactor").list(3, 3).orLeaveOut().clamped(0, 1),
-                                   choice("alphaMode", "OPAQUE MASK BLEND").orLeaveOut(),
-                                   number("alphaCutoff").orLeaveOut().clamped(0, largestFloat),
-                                   rule("doubleSided", Kind::Boolean).orLeaveOut(),
+                                   number("emissiveFactor").list(3, 3).dropIfInvalid().clamped(0, 1),
+                                   choice("alphaMode", "OPAQUE MASK BLEND").dropIfInvalid(),
+                                   number("alphaCutoff").dropIfInvalid().clamped(0, maxFloat),
+                                   rule("doubleSided", Kind::Boolean).dropIfInvalid(),
                                    name,
-                                   object("extensions", materialExtensions).orLeaveOut(),
+                                   object("extensions", materialExtensions).dropIfInvalid(),
                                    extras};
 
 // --------------------------------------------------------------------------------------------------- meshes and nodes
@@ -193,12 +195,12 @@ constexpr SchemaRule mesh[] = {object("primitives", primitive).list().required()
 constexpr SchemaRule instancing[] = {indexMap("attributes", "accessors").required()};
 // checkViewRules() checks the lights, so that a faulty one costs only itself.
 constexpr SchemaRule punctual = rule("KHR_lights_punctual", Kind::Any);
-constexpr SchemaRule visibility[] = {rule("visible", Kind::Boolean).orLeaveOut()};
+constexpr SchemaRule visibility[] = {rule("visible", Kind::Boolean).dropIfInvalid()};
 // validateLods() checks which nodes may be levels.
-constexpr SchemaRule lod[] = {index("ids", "nodes").list().required().orLeaveOut()};
+constexpr SchemaRule lod[] = {index("ids", "nodes").list().required().dropIfInvalid()};
 constexpr SchemaRule nodeExtensions[] = {object("EXT_mesh_gpu_instancing", instancing), punctual,
-                                         object("MSFT_lod", lod).orLeaveOut(),
-                                         object("KHR_node_visibility", visibility).orLeaveOut()};
+                                         object("MSFT_lod", lod).dropIfInvalid(),
+                                         object("KHR_node_visibility", visibility).dropIfInvalid()};
 
 constexpr SchemaRule node[] = {index("camera", "cameras"),
                                index("children", "nodes").list(),
@@ -219,16 +221,16 @@ constexpr SchemaRule skin[] = {index("inverseBindMatrices", "accessors"), index(
                                index("joints", "nodes").list().required(), name};
 
 // Of cameras, the size of the view counts: checkViewRules() leaves out those without one.
-constexpr SchemaRule perspective[] = {number("yfov").orLeaveOut()};
-constexpr SchemaRule orthographic[] = {number("ymag").orLeaveOut()};
-constexpr SchemaRule camera[] = {choice("type", "perspective orthographic").orLeaveOut(),
-                                 object("perspective", perspective).orLeaveOut(),
-                                 object("orthographic", orthographic).orLeaveOut(), name};
+constexpr SchemaRule perspective[] = {number("yfov").dropIfInvalid()};
+constexpr SchemaRule orthographic[] = {number("ymag").dropIfInvalid()};
+constexpr SchemaRule camera[] = {choice("type", "perspective orthographic").dropIfInvalid(),
+                                 object("perspective", perspective).dropIfInvalid(),
+                                 object("orthographic", orthographic).dropIfInvalid(), name};
 
 // ------------------------------------------------------------------------------------------------------ the document
 
-constexpr SchemaRule asset[] = {text("version").required(), text("minVersion"), text("generator").orLeaveOut(),
-                                text("copyright").orLeaveOut()};
+constexpr SchemaRule asset[] = {text("version").required(), text("minVersion"), text("generator").dropIfInvalid(),
+                                text("copyright").dropIfInvalid()};
 
 constexpr SchemaRule documentExtensions[] = {punctual, variants};
 
@@ -240,7 +242,7 @@ constexpr SchemaRule documentMembers[] = {object("asset", asset).required(),
                                           object("buffers", buffer).list(),
                                           object("bufferViews", bufferView).list(),
                                           object("cameras", camera).list(),
-                                          object("extensions", documentExtensions).orLeaveOut(),
+                                          object("extensions", documentExtensions).dropIfInvalid(),
                                           object("images", image).list(),
                                           object("materials", material).list(),
                                           object("meshes", mesh).list(),
@@ -258,7 +260,7 @@ using Type = JsonTree::Type;
 std::string rangeText(const SchemaRule& rule)
 {
     std::string text = rule.kind == Kind::Integer ? "an integer" : "a number";
-    text += " from " + numberText(rule.least) + " to " + numberText(rule.most);
+    text += " from " + numberText(rule.min) + " to " + numberText(rule.max);
     if (rule.step != 1.0) text += " in steps of " + numberText(rule.step);
     return text;
 }
@@ -269,7 +271,7 @@ std::string elementsText(const SchemaRule& rule)
                              : rule.kind == Kind::Index  ? " indices"
                              : rule.kind == Kind::String ? " texts"
                                                          : " objects";
-    return (rule.leastCount == rule.mostCount ? "" : "at least ") + std::to_string(rule.leastCount) + what;
+    return (rule.minCount == rule.maxCount ? "" : "at least ") + std::to_string(rule.minCount) + what;
 }
 
 /// Calls visit(choice) for each choice until it returns true; returns whether a call did.
@@ -379,10 +381,9 @@ private:
     Outcome checkList(const JsonValue& value, const SchemaRule& rule)
     {
         if (!value.is(Type::Array)) return wrong(rule, "an array of " + elementsText(rule), value);
-        if (value.size() == 0 && !rule.isRequired && rule.leastCount <= 1)
+        if (value.size() == 0 && !rule.isRequired && rule.minCount <= 1)
             return find(OnFault::LeaveOut, elementsText(rule), "none");
-        if (value.size() < rule.leastCount || value.size() > rule.mostCount)
-            return wrong(rule, elementsText(rule), value);
+        if (value.size() < rule.minCount || value.size() > rule.maxCount) return wrong(rule, elementsText(rule), value);
         _path.push_back({{}, 0});
         Outcome outcome = Outcome::Good;
         for (const JsonValue& element : value)
@@ -427,9 +428,9 @@ private:
     {
         if (!value.is(Type::Number)) return wrong(rule, "a number", value);
         const double number = value.number();
-        if (number >= rule.least && number <= rule.most) return Outcome::Good;
+        if (number >= rule.min && number <= rule.max) return Outcome::Good;
         if (rule.onRange != OnFault::Clamp) return find(rule.onRange, rangeText(rule), value.description());
-        const double nearest = std::clamp(number, rule.least, rule.most);
+        const double nearest = std::clamp(number, rule.min, rule.max);
         value.setNumber(nearest);
         // Exporters write 1.0000001: rounding, not a fault.
         if (std::abs(nearest - number) > 1e-5)
@@ -442,7 +443,7 @@ private:
     {
         if (!value.isInteger()) return wrong(rule, "an integer", value);
         const double number = value.number();
-        if (number < rule.least || number > rule.most || (rule.step != 1.0 && std::fmod(number, rule.step) != 0.0))
+        if (number < rule.min || number > rule.max || (rule.step != 1.0 && std::fmod(number, rule.step) != 0.0))
             return find(rule.onRange, rangeText(rule), value.description());
         return Outcome::Good;
     }

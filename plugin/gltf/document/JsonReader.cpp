@@ -2,15 +2,12 @@
 #include "gltf/document/JsonReader.h"
 
 #include "gltf/document/MemoryBudget.h"
-#include "gltf/file/Report.h"
 #include "gltf/file/Uri.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <limits>
-#include <optional>
-#include <utility>
 
 namespace osgGpuAnimation::gltf
 {
@@ -18,13 +15,8 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
-constexpr std::size_t leastTaken = 1024;
-
-constexpr std::ptrdiff_t rootDepth = 1;
-constexpr std::ptrdiff_t elementDepth = 3; ///< of the members of buffers[0]
-
 // readModel() recurses over extras. A stack of 8 MB must suffice, whatever depth the options allow.
-const std::size_t deepestJson = 1000;
+const std::size_t maxDepthOfJson = 1000;
 
 /// Builds the tree from the events of nlohmann's SAX parser, which prescribes the names.
 class TreeBuilder
@@ -32,29 +24,34 @@ class TreeBuilder
 public:
     using Json = nlohmann::json;
 
-    TreeBuilder(JsonText& source, JsonTree& tree, const ImportOptions& options)
-        : _source(source), _tree(tree), _mostDepth(std::min(options.maxJsonDepth, deepestJson)),
-          _mostElements(options.maxElements),
-          _mostValues(std::min<std::size_t>(options.maxDocumentBytes / bytesOfJsonValue,
-                                            std::numeric_limits<std::uint32_t>::max() - 1))
+    TreeBuilder(JsonTree& tree, const ImportOptions& options)
+        : _tree(tree), _maxLetters(options.maxDocumentBytes / bytesOfJsonLetter),
+          _maxDepth(std::min(options.maxJsonDepth, maxDepthOfJson)), _maxElements(options.maxElements),
+          _maxValues(std::min<std::size_t>(options.maxDocumentBytes / bytesOfJsonValue,
+                                           std::numeric_limits<std::uint32_t>::max() - 1))
     {
     }
 
-    void reserve() { _tree.reserve(std::min(_source.mostValues(), _mostValues), _source.text().size()); }
-
     bool null() { return add(JsonTree::Type::Null); }
     bool boolean(bool value) { return addNumber(JsonTree::Type::Boolean, value ? 1.0 : 0.0); }
-    bool number_integer(Json::number_integer_t value) { return addNumber(JsonTree::Type::Number, double(value)); }
-    bool number_unsigned(Json::number_unsigned_t value) { return addNumber(JsonTree::Type::Number, double(value)); }
+    bool number_integer(Json::number_integer_t value)
+    {
+        return addNumber(JsonTree::Type::Number, static_cast<double>(value));
+    }
+    bool number_unsigned(Json::number_unsigned_t value)
+    {
+        return addNumber(JsonTree::Type::Number, static_cast<double>(value));
+    }
     bool number_float(Json::number_float_t value, const std::string&)
     {
         return addNumber(JsonTree::Type::Number, value);
     }
     bool string(std::string& value)
     {
-        if (!add(JsonTree::Type::String)) return false;
-        if (const std::optional<std::string_view> data = _source.dataAt(_strings++))
-            _tree.setOutsideText(_last, *data);
+        const bool isData = isDataOfFile(value);
+        if ((!isData && !countLetters(value)) || !add(JsonTree::Type::String)) return false;
+        if (isData)
+            _tree.setData(_last, std::move(value));
         else
             _tree.setText(_last, value);
         return true;
@@ -64,9 +61,8 @@ public:
     bool start_array(std::size_t) { return open(JsonTree::Type::Array); }
     bool key(std::string& name)
     {
-        ++_strings;
         _key.swap(name);
-        return true;
+        return countLetters(_key);
     }
     bool end_object()
     {
@@ -78,7 +74,6 @@ public:
     {
         if (!_fault.empty()) return false;
         _fault = "JSON syntax: " + withoutId(exception.what());
-        if (_source.dataBytes() > 0) _fault += " (counted without the data URIs)";
         return false;
     }
 
@@ -104,12 +99,27 @@ private:
         return false;
     }
 
+    /// The data URI of a buffer or image: data URIs can be nearly all of a file.
+    bool isDataOfFile(std::string_view text) const
+    {
+        if (_open.size() != 3 || _key != "uri" || !isDataUri(text)) return false;
+        const std::string_view list = _tree.keyOf(_open[1].value);
+        return list == "buffers" || list == "images";
+    }
+
+    bool countLetters(std::string_view text)
+    {
+        _letters += text.size();
+        return _letters <= _maxLetters || refuse("strings of at most " + std::to_string(_maxLetters) +
+                                                 " bytes in all, less data URIs (limit maxDocumentBytes)");
+    }
+
     bool add(JsonTree::Type type)
     {
-        if (_tree.size() >= _mostValues)
-            return refuse("at most " + std::to_string(_mostValues) + " values in all (limit maxDocumentBytes)");
-        if (!_open.empty() && ++_open.back().size > _mostElements)
-            return refuse("arrays of at most " + std::to_string(_mostElements) + " elements (limit maxElements)");
+        if (_tree.size() >= _maxValues)
+            return refuse("at most " + std::to_string(_maxValues) + " values in all (limit maxDocumentBytes)");
+        if (!_open.empty() && ++_open.back().size > _maxElements)
+            return refuse("arrays of at most " + std::to_string(_maxElements) + " elements (limit maxElements)");
         _last = _tree.add(type, _key);
         _key.clear();
         return true;
@@ -124,8 +134,8 @@ private:
 
     bool open(JsonTree::Type type)
     {
-        if (_open.size() >= _mostDepth)
-            return refuse("a nesting depth of at most " + std::to_string(_mostDepth) + " (limit maxJsonDepth)");
+        if (_open.size() >= _maxDepth)
+            return refuse("a nesting depth of at most " + std::to_string(_maxDepth) + " (limit maxJsonDepth)");
         if (!add(type)) return false;
         _open.push_back({_last, 0});
         return true;
@@ -162,12 +172,12 @@ private:
             }
     }
 
-    JsonText& _source;
     JsonTree& _tree;
-    std::size_t _strings = 0; ///< read so far, keys included
-    std::size_t _mostDepth;
-    std::size_t _mostElements;
-    std::size_t _mostValues;
+    std::size_t _letters = 0; ///< of strings and keys
+    std::size_t _maxLetters;
+    std::size_t _maxDepth;
+    std::size_t _maxElements;
+    std::size_t _maxValues;
     std::string _key;
     std::uint32_t _last = 0;
     std::vector<Open> _open;
@@ -212,90 +222,13 @@ std::optional<Error> checkEnd(std::string_view text, Report& report)
 
 } // namespace
 
-JsonText::JsonText(std::string_view text) : _whole(text)
-{
-    for (std::size_t at = 0; at < text.size(); ++at)
-    {
-        const char c = text[at];
-        if (c == ',') ++_mostValues;
-        if (c == '{' || c == '[')
-        {
-            ++_depth;
-            ++_mostValues;
-        }
-        if (c == '}' || c == ']') --_depth;
-        if (c != '"') continue;
-        const std::size_t begin = at + 1;
-        bool isPlain = true;
-        for (at = begin; at < text.size() && text[at] != '"'; ++at)
-        {
-            isPlain = isPlain && text[at] >= 0x20 && text[at] < 0x7f && text[at] != '\\';
-            if (text[at] == '\\') ++at;
-        }
-        if (at < text.size())
-            readString(begin, at, isPlain);
-        else
-            _otherBytes += text.size() - begin; // the parser stores the unterminated string
-    }
-    shorten();
-}
-
-void JsonText::readString(std::size_t begin, std::size_t end, bool isPlain)
-{
-    const std::string_view string = _whole.substr(begin, end - begin);
-    const std::size_t number = _strings++;
-    const std::size_t next = _whole.find_first_not_of(" \t\r\n", end + 1);
-    if (next != std::string_view::npos && _whole[next] == ':')
-    {
-        _key = string;
-        if (_depth == rootDepth) _list = string;
-    }
-    else if (isPlain && string.size() >= leastTaken && _depth == elementDepth && _key == "uri" &&
-             (_list == "buffers" || _list == "images") && isDataUri(string))
-    {
-        _data.emplace_back(number, string);
-        return;
-    }
-    _otherBytes += string.size();
-}
-
-void JsonText::shorten()
-{
-    if (_data.empty()) return;
-    std::size_t left = _whole.size();
-    for (const auto& [number, data] : _data)
-        left -= data.size();
-    _shortened.reserve(left);
-    const char* from = _whole.data();
-    for (const auto& [number, data] : _data)
-    {
-        _shortened.append(from, data.data());
-        from = data.data() + data.size();
-    }
-    _shortened.append(from, _whole.data() + _whole.size());
-}
-
-std::optional<std::string_view> JsonText::dataAt(std::size_t string)
-{
-    if (_nextData == _data.size() || _data[_nextData].first != string) return std::nullopt;
-    return _data[_nextData++].second;
-}
-
 Result<JsonTree> readJson(std::string_view text, const ImportOptions& options, Report& report)
 {
     if (text.size() >= std::numeric_limits<std::uint32_t>::max())
         return Error{"JSON: expected a text of less than 4 GiB, found " + std::to_string(text.size()) + " bytes"};
-    JsonText source(text);
-    if (source.otherBytes() > options.maxDocumentBytes / bytesOfJsonLetter)
-        return fault("JSON",
-                     "strings of at most " + std::to_string(options.maxDocumentBytes / bytesOfJsonLetter) +
-                         " bytes in all, less data URIs without escapes (limit maxDocumentBytes)",
-                     std::to_string(source.otherBytes()));
     JsonTree tree;
-    TreeBuilder builder(source, tree, options);
-    builder.reserve();
-    if (!nlohmann::json::sax_parse(source.text().begin(), source.text().end(), &builder))
-        return Error{builder.faultText()};
+    TreeBuilder builder(tree, options);
+    if (!nlohmann::json::sax_parse(text.begin(), text.end(), &builder)) return Error{builder.faultText()};
     if (const std::optional<Error> more = checkEnd(text, report)) return *more;
     if (!tree.root().is(JsonTree::Type::Object))
         return fault("JSON", "an object as the root", tree.root().description());

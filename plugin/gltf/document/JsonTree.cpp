@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/document/JsonTree.h"
 
-#include "gltf/file/Report.h"
-
 #include <cmath>
 
 namespace osgGpuAnimation::gltf
@@ -13,19 +11,13 @@ JsonValue JsonTree::root()
     return JsonValue(*this, 0);
 }
 
-void JsonTree::reserve(std::size_t values, std::size_t textBytes)
-{
-    _nodes.reserve(values);
-    _text.reserve(textBytes);
-}
-
 std::uint32_t JsonTree::add(Type type, std::string_view key)
 {
     Node node;
     node.type = type;
-    node.key = std::uint32_t(_text.size());
-    node.keyLength = std::uint32_t(key.size());
-    node.end = std::uint32_t(_nodes.size() + 1);
+    node.key = static_cast<std::uint32_t>(_text.size());
+    node.keyLength = static_cast<std::uint32_t>(key.size());
+    node.end = static_cast<std::uint32_t>(_nodes.size() + 1);
     _text += key;
     _nodes.push_back(node);
     return node.end - 1;
@@ -38,21 +30,21 @@ void JsonTree::setNumber(std::uint32_t value, double number)
 
 void JsonTree::setText(std::uint32_t value, std::string_view text)
 {
-    _nodes[value].text = std::uint32_t(_text.size());
-    _nodes[value].textLength = std::uint32_t(text.size());
+    _nodes[value].text = static_cast<std::uint32_t>(_text.size());
+    _nodes[value].textLength = static_cast<std::uint32_t>(text.size());
     _text += text;
 }
 
-void JsonTree::setOutsideText(std::uint32_t value, std::string_view text)
+void JsonTree::setData(std::uint32_t value, std::string&& uri)
 {
-    _nodes[value].text = std::uint32_t(_outside.size());
-    _nodes[value].isTextOutside = true;
-    _outside.push_back(text);
+    _nodes[value].text = static_cast<std::uint32_t>(_data.size());
+    _nodes[value].isData = true;
+    _data.push_back(std::move(uri));
 }
 
 void JsonTree::end(std::uint32_t container, std::uint32_t size)
 {
-    _nodes[container].end = std::uint32_t(_nodes.size());
+    _nodes[container].end = static_cast<std::uint32_t>(_nodes.size());
     _nodes[container].size = size;
 }
 
@@ -68,7 +60,7 @@ bool JsonValue::isInteger() const
 
 std::string_view JsonValue::text() const
 {
-    if (node().isTextOutside) return _tree->_outside[node().text];
+    if (node().isData) return _tree->_data[node().text];
     return std::string_view(_tree->_text).substr(node().text, node().textLength);
 }
 

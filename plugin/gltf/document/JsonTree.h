@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "gltf/file/Report.h"
+
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,18 +33,19 @@ public:
 
     JsonValue root();
 
-    /// Reserves memory, so that nothing is moved while the tree grows.
-    void reserve(std::size_t values, std::size_t textBytes);
     /// For the reader: values in document order; end() is called for each array and object once it is complete.
     std::uint32_t add(Type type, std::string_view key);
     void setNumber(std::uint32_t value, double number);
     void setText(std::uint32_t value, std::string_view text);
-    /// The same for text that stays where it is, in bytes that outlive the tree.
-    void setOutsideText(std::uint32_t value, std::string_view text);
+    /// The same for a data URI, which is not copied.
+    void setData(std::uint32_t value, std::string&& uri);
     void end(std::uint32_t container, std::uint32_t size);
     void drop(std::uint32_t value);
     std::size_t size() const { return _nodes.size(); }
-    std::string_view keyOf(std::uint32_t value) const;
+    std::string_view keyOf(std::uint32_t value) const
+    {
+        return std::string_view(_text).substr(_nodes[value].key, _nodes[value].keyLength);
+    }
     std::uint32_t endOf(std::uint32_t value) const { return _nodes[value].end; }
 
 private:
@@ -58,12 +62,12 @@ private:
         std::uint32_t size = 0; ///< elements or members
         Type type = Type::Null;
         bool dropped = false;
-        bool isTextOutside = false; ///< text is an index of _outside
+        bool isData = false; ///< text is an index of _data
     };
 
     std::vector<Node> _nodes;
     std::string _text;
-    std::vector<std::string_view> _outside;
+    std::vector<std::string> _data;
 };
 
 /// A value of a tree, or none: asking a missing value for a member gives a missing value again.
@@ -86,7 +90,7 @@ public:
     double number() const { return node().number; }
     bool boolean() const { return node().number != 0.0; }
     std::string_view text() const;
-    std::string_view key() const;
+    std::string_view key() const { return _tree->keyOf(_value); }
 
     JsonValue operator[](std::string_view member) const;
 
@@ -102,20 +106,35 @@ public:
     class Iterator
     {
     public:
-        Iterator(JsonTree* tree, std::uint32_t value, std::uint32_t end);
+        Iterator(JsonTree* tree, std::uint32_t value, std::uint32_t end) : _tree(tree), _value(value), _end(end)
+        {
+            skipDropped();
+        }
+
         JsonValue operator*() const { return JsonValue(*_tree, _value); }
-        Iterator& operator++();
+        Iterator& operator++()
+        {
+            _value = _tree->endOf(_value);
+            skipDropped();
+            return *this;
+        }
         bool operator!=(const Iterator& other) const { return _value != other._value; }
 
     private:
-        void skipDropped();
+        void skipDropped()
+        {
+            while (_value != _end && _tree->_nodes[_value].dropped)
+                _value = _tree->endOf(_value);
+        }
+
         JsonTree* _tree;
         std::uint32_t _value;
         std::uint32_t _end;
     };
+
     /// The elements of an array, the members of an object; nothing for other values.
-    Iterator begin() const;
-    Iterator end() const;
+    Iterator begin() const { return _tree ? Iterator(_tree, _value + 1, node().end) : Iterator(nullptr, 0, 0); }
+    Iterator end() const { return _tree ? Iterator(_tree, node().end, node().end) : Iterator(nullptr, 0, 0); }
 
 private:
     const JsonTree::Node& node() const { return _tree->_nodes[_value]; }
@@ -124,47 +143,22 @@ private:
     std::uint32_t _value = 0;
 };
 
-// Called for every value of a document, a few times each.
-
-inline std::string_view JsonTree::keyOf(std::uint32_t value) const
+/// Calls visit(primitive, PrimitiveName) for each primitive of the document's meshes, until it returns an error.
+template <typename Visit>
+std::optional<Error> forEachPrimitive(const JsonValue& meshes, const Visit& visit)
 {
-    return std::string_view(_text).substr(_nodes[value].key, _nodes[value].keyLength);
-}
-
-inline std::string_view JsonValue::key() const
-{
-    return _tree->keyOf(_value);
-}
-
-inline JsonValue::Iterator::Iterator(JsonTree* tree, std::uint32_t value, std::uint32_t end)
-    : _tree(tree), _value(value), _end(end)
-{
-    skipDropped();
-}
-
-inline JsonValue::Iterator& JsonValue::Iterator::operator++()
-{
-    _value = _tree->endOf(_value);
-    skipDropped();
-    return *this;
-}
-
-inline void JsonValue::Iterator::skipDropped()
-{
-    while (_value != _end && _tree->_nodes[_value].dropped)
-        _value = _tree->endOf(_value);
-}
-
-inline JsonValue::Iterator JsonValue::begin() const
-{
-    if (!_tree) return Iterator(nullptr, 0, 0);
-    return Iterator(_tree, _value + 1, node().end);
-}
-
-inline JsonValue::Iterator JsonValue::end() const
-{
-    if (!_tree) return Iterator(nullptr, 0, 0);
-    return Iterator(_tree, node().end, node().end);
+    PrimitiveName name;
+    for (const JsonValue& mesh : meshes)
+    {
+        name.primitive = 0;
+        for (const JsonValue& primitive : mesh["primitives"])
+        {
+            if (std::optional<Error> error = visit(primitive, name)) return error;
+            ++name.primitive;
+        }
+        ++name.mesh;
+    }
+    return std::nullopt;
 }
 
 } // namespace osgGpuAnimation::gltf

@@ -5,7 +5,6 @@
 
 #include <tiny_gltf.h>
 
-#include <string>
 #include <string_view>
 
 namespace osgGpuAnimation::gltf
@@ -50,39 +49,29 @@ JsonValue elementsOf(const JsonValue& document, const List& list)
     return list.name == "lights" ? document["extensions"]["KHR_lights_punctual"]["lights"] : document[list.name];
 }
 
-/// Extras become tinygltf::Values, which are more than twice as large as a value of the tree.
-std::size_t bytesOfExtras(const JsonValue& element)
+/// Extras and variants become tinygltf::Values, which are more than twice as large as a value of the tree.
+std::size_t bytesOfValues(const JsonValue& json)
 {
-    const JsonValue extras = element["extras"];
-    return extras ? (extras.valuesBelow() + 1) * sizeof(tinygltf::Value) : 0;
+    return json ? (json.valuesBelow() + 1) * sizeof(tinygltf::Value) : 0;
 }
 
-/// So do variants.
 std::size_t bytesOfVariants(const JsonValue& element)
 {
-    const JsonValue variants = element["extensions"]["KHR_materials_variants"];
-    return variants ? (variants.valuesBelow() + 1) * sizeof(tinygltf::Value) : 0;
-}
-
-std::size_t bytesOfVariants(const JsonValue& meshes, const List& list)
-{
-    std::size_t bytes = 0;
-    if (list.name != "meshes") return bytes;
-    for (const JsonValue& mesh : meshes)
-        for (const JsonValue& primitive : mesh["primitives"])
-            bytes += bytesOfVariants(primitive);
-    return bytes;
+    return bytesOfValues(element["extensions"]["KHR_materials_variants"]);
 }
 
 std::size_t bytesOf(const JsonValue& json, const List& list)
 {
-    std::size_t bytes = bytesOfVariants(json, list);
+    std::size_t bytes = 0;
     for (const JsonValue& element : json)
     {
-        bytes += list.bytesAnElement + bytesOfExtras(element);
+        bytes += list.bytesAnElement + bytesOfValues(element["extras"]);
         for (std::size_t i = 0; i < 2; ++i)
             if (const JsonValue inner = list.inner[i].empty() ? JsonValue() : element[list.inner[i]])
                 bytes += inner.size() * list.bytesAnInnerElement[i];
+        if (list.name == "meshes")
+            for (const JsonValue& primitive : element["primitives"])
+                bytes += bytesOfVariants(primitive);
     }
     return bytes;
 }

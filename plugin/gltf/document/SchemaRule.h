@@ -9,9 +9,9 @@
 namespace osgGpuAnimation::gltf::schema
 {
 
-constexpr double largestInteger = 9007199254740991.0; // 2^53 - 1: exact in every JSON reader (section 2.7)
-constexpr double largestInt = 2147483647.0;
-constexpr double largestFloat = 3.4028234663852886e38;
+constexpr double maxInteger = 9007199254740991.0; // 2^53 - 1: exact in every JSON reader (section 2.7)
+constexpr double maxInt = 2147483647.0;
+constexpr double maxFloat = 3.4028234663852886e38;
 constexpr std::size_t anyCount = std::size_t(-1);
 
 /// The consequence for a member that breaks its rule.
@@ -45,14 +45,14 @@ struct SchemaRule
     Kind kind = Kind::Any;
     bool isList = false; ///< an array of that kind
     bool isRequired = false;
-    OnFault onFault = OnFault::Refuse;         ///< wrong type, wrong number of elements, missing, bad index
-    OnFault onRange = OnFault::LeaveOut;       ///< a number of the right type that is out of range
-    double least = 0.0, most = 0.0;            ///< of numbers, both inclusive
-    double step = 1.0;                         ///< integers are multiples of it
-    std::size_t leastCount = 0, mostCount = 0; ///< of the elements of a list
-    std::string_view collection;               ///< of indices: the array of the document that they refer to
-    std::string_view choices;                  ///< separated by spaces
-    const SchemaRule* members = nullptr;       ///< of objects
+    OnFault onFault = OnFault::Refuse;      ///< wrong type, wrong number of elements, missing, bad index
+    OnFault onRange = OnFault::LeaveOut;    ///< a number of the right type that is out of range
+    double min = 0.0, max = 0.0;            ///< of numbers, both inclusive
+    double step = 1.0;                      ///< integers are multiples of it
+    std::size_t minCount = 0, maxCount = 0; ///< of the elements of a list
+    std::string_view collection;            ///< of indices: the array of the document that they refer to
+    std::string_view choices;               ///< separated by spaces
+    const SchemaRule* members = nullptr;    ///< of objects
     std::size_t memberCount = 0;
 
     template <typename Member>
@@ -65,12 +65,12 @@ struct SchemaRule
     constexpr SchemaRule required() const { return with(&SchemaRule::isRequired, true); }
     constexpr SchemaRule withRangeFault(OnFault fault) const { return with(&SchemaRule::onRange, fault); }
     /// Any fault removes this member only.
-    constexpr SchemaRule orLeaveOut() const
+    constexpr SchemaRule dropIfInvalid() const
     {
         return with(&SchemaRule::onFault, OnFault::LeaveOut).withRangeFault(OnFault::LeaveOut);
     }
-    constexpr SchemaRule from(double first) const { return with(&SchemaRule::least, first); }
-    constexpr SchemaRule upTo(double last) const { return with(&SchemaRule::most, last); }
+    constexpr SchemaRule from(double first) const { return with(&SchemaRule::min, first); }
+    constexpr SchemaRule upTo(double last) const { return with(&SchemaRule::max, last); }
     constexpr SchemaRule clamped(double first, double last) const
     {
         return from(first).upTo(last).withRangeFault(OnFault::Clamp);
@@ -78,9 +78,7 @@ struct SchemaRule
     constexpr SchemaRule inStepsOf(double multiple) const { return with(&SchemaRule::step, multiple); }
     constexpr SchemaRule list(std::size_t atLeast = 1, std::size_t atMost = anyCount) const
     {
-        return with(&SchemaRule::isList, true)
-            .with(&SchemaRule::leastCount, atLeast)
-            .with(&SchemaRule::mostCount, atMost);
+        return with(&SchemaRule::isList, true).with(&SchemaRule::minCount, atLeast).with(&SchemaRule::maxCount, atMost);
     }
 };
 
@@ -96,12 +94,12 @@ constexpr SchemaRule text(std::string_view name)
 
 constexpr SchemaRule integer(std::string_view name)
 {
-    return rule(name, Kind::Integer).upTo(largestInteger).withRangeFault(OnFault::Refuse);
+    return rule(name, Kind::Integer).upTo(maxInteger).withRangeFault(OnFault::Refuse);
 }
 
 constexpr SchemaRule number(std::string_view name)
 {
-    return rule(name, Kind::Number).from(-largestFloat).upTo(largestFloat);
+    return rule(name, Kind::Number).from(-maxFloat).upTo(maxFloat);
 }
 
 constexpr SchemaRule index(std::string_view name, std::string_view collection)

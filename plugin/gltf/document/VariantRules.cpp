@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/document/VariantRules.h"
+#include "gltf/document/DocumentRules.h"
 
 #include <cstddef>
 #include <optional>
@@ -120,14 +120,12 @@ void checkVariantRules(const JsonValue& document, Report& report)
     Counts counts;
     counts.variants = checkVariants(document["extensions"], report);
     if (const JsonValue materials = document["materials"]) counts.materials = materials.size();
-    std::size_t m = 0;
-    for (const JsonValue& mesh : document["meshes"])
-    {
-        std::size_t p = 0;
-        for (const JsonValue& primitive : mesh["primitives"])
-            checkPrimitive(primitive, PrimitiveName{m, p++}, counts, report);
-        ++m;
-    }
+    forEachPrimitive(document["meshes"],
+                     [&](const JsonValue& primitive, const PrimitiveName& name) -> std::optional<Error>
+                     {
+                         checkPrimitive(primitive, name, counts, report);
+                         return std::nullopt;
+                     });
 }
 
 } // namespace osgGpuAnimation::gltf

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/document/ViewRules.h"
+#include "gltf/document/DocumentRules.h"
 
 #include <optional>
 #include <string>
@@ -12,21 +12,21 @@ namespace
 {
 
 constexpr std::string_view lightExtension = "KHR_lights_punctual";
-constexpr double largestFloat = 3.4028234663852886e38;
+constexpr double maxFloat = 3.4028234663852886e38;
 constexpr double halfPi = 1.5707964; // pi / 2 as a float, rounded up
 constexpr double pi = 3.14159265358979;
 
 struct NumberRule
 {
     std::string_view member;
-    double least, most;
+    double min, max;
     bool isLeastAllowed;
     const char* expected;
 };
 
 constexpr NumberRule lightNumbers[] = {
-    {"intensity", 0.0, largestFloat, true, "a number from 0"},
-    {"range", 0.0, largestFloat, false, "a number above 0"},
+    {"intensity", 0.0, maxFloat, true, "a number from 0"},
+    {"range", 0.0, maxFloat, false, "a number above 0"},
 };
 
 constexpr NumberRule coneNumbers[] = {
@@ -40,7 +40,7 @@ using Fault = std::optional<Error>;
 
 bool isIn(const NumberRule& rule, double number)
 {
-    return number <= rule.most && (number > rule.least || (rule.isLeastAllowed && number == rule.least));
+    return number <= rule.max && (number > rule.min || (rule.isLeastAllowed && number == rule.min));
 }
 
 /// A fault for a member of another type. A number out of range is left out.
@@ -68,7 +68,7 @@ Fault checkColor(const JsonValue& light, const std::string& name)
     if (!color.is(JsonTree::Type::Array) || color.size() != 3)
         return fault(name + ".color", expected, color.description());
     for (const JsonValue& channel : color)
-        if (!channel.is(JsonTree::Type::Number) || channel.number() < 0.0 || channel.number() > largestFloat)
+        if (!channel.is(JsonTree::Type::Number) || channel.number() < 0.0 || channel.number() > maxFloat)
             return fault(name + ".color", expected, channel.description());
     return std::nullopt;
 }

@@ -17,10 +17,10 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
-const std::size_t mostPathText = 200;
+const std::size_t maxPathText = 200;
 
 // A GLB stores its length in 32 bits. A sparse file can be far larger than its disk.
-const std::uint64_t mostBytesOfAFile = std::uint64_t(1) << 32;
+const std::uint64_t maxBytesOfAFile = std::uint64_t(1) << 32;
 
 Error about(const std::string& path, const std::string& what)
 {
@@ -123,7 +123,7 @@ Error withoutPath(const Error& error, const std::string& path)
 
 std::string subjectOfFile(const std::string& path)
 {
-    return printable(path, mostPathText) + ": ";
+    return printable(path, maxPathText) + ": ";
 }
 
 Result<RegularFile> RegularFile::open(const std::string& path)
@@ -136,7 +136,7 @@ Result<RegularFile> RegularFile::open(const std::string& path)
     if (descriptor < 0) return about(path, systemText(errno));
     RegularFile file(descriptor, 0, path);
     if (::fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) return about(path, kindText(status.st_mode));
-    file._size = std::size_t(status.st_size);
+    file._size = static_cast<std::size_t>(status.st_size);
     return file;
 }
 
@@ -167,12 +167,13 @@ Result<std::size_t> RegularFile::read(void* to, std::size_t bytes) const
     std::size_t done = 0;
     while (done < bytes)
     {
-        const ssize_t count = ::pread(_descriptor, static_cast<char*>(to) + done, bytes - done, off_t(done));
+        const ssize_t count =
+            ::pread(_descriptor, static_cast<char*>(to) + done, bytes - done, static_cast<off_t>(done));
         if (count < 0 && errno == EINTR) continue;
         if (count < 0) return about(_path, std::string("the file cannot be read: ") + std::strerror(errno));
         if (count == 0)
             return about(_path, "expected " + std::to_string(bytes) + " bytes, found " + std::to_string(done));
-        done += std::size_t(count);
+        done += static_cast<std::size_t>(count);
     }
     return done;
 }
@@ -181,8 +182,8 @@ Result<std::string> RegularFile::readWhole() const
 {
     if (_size == 0) return about(_path, "the file is empty");
     std::string content;
-    if (_size > mostBytesOfAFile || _size > content.max_size())
-        return about(_path, "expected a file of at most " + std::to_string(mostBytesOfAFile) + " bytes, found " +
+    if (_size > maxBytesOfAFile || _size > content.max_size())
+        return about(_path, "expected a file of at most " + std::to_string(maxBytesOfAFile) + " bytes, found " +
                                 std::to_string(_size));
     content.resize(_size);
     const Result<std::size_t> done = read(content.data(), content.size());
@@ -239,7 +240,7 @@ Result<std::string> readModelFile(const std::string& path, const ImportOptions& 
     return bytes ? std::move(bytes) : withoutPath(bytes.error(), path);
 }
 
-Result<std::string> readModelStream(std::istream& stream, const ImportOptions& options, std::size_t mostBytes)
+Result<std::string> readModelStream(std::istream& stream, const ImportOptions& options, std::size_t maxBytes)
 {
     std::string bytes;
     char block[65536];
@@ -248,12 +249,12 @@ Result<std::string> readModelStream(std::istream& stream, const ImportOptions& o
     {
         bytes.append(block, static_cast<std::size_t>(stream.gcount()));
         if (bytes.size() < bytesBeforeJson) continue;
-        if (!json) json = claimedJsonBytes(bytes, mostBytes);
+        if (!json) json = claimedJsonBytes(bytes, maxBytes);
         // A GLB may claim more than it has: splitContainer() reports that.
         if (*json > options.maxJsonBytes && bytes.size() - bytesBeforeJson > options.maxJsonBytes)
             return *checkJsonBytes(bytes.size() - bytesBeforeJson, options.maxJsonBytes);
-        if (bytes.size() > mostBytes)
-            return Error{"the stream holds more than " + std::to_string(mostBytes) + " bytes, or does not end"};
+        if (bytes.size() > maxBytes)
+            return Error{"the stream holds more than " + std::to_string(maxBytes) + " bytes, or does not end"};
     }
     if (stream.bad()) return Error{"the stream cannot be read"};
     return bytes;

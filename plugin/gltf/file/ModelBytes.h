@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "gltf/file/ImportOptions.h"
 #include "gltf/file/Report.h"
-#include "gltf/ImportOptions.h"
 
 #include <osgGpuAnimation/math/Result.h>
 
@@ -72,8 +72,8 @@ std::optional<Error> checkJsonBytes(std::size_t bytes, std::size_t limit);
 /// or cannot be read; more JSON than options.maxJsonBytes.
 Result<std::string> readModelFile(const std::string& path, const ImportOptions& options);
 
-/// The rest of a stream, at most mostBytes. Errors: it fails, holds more, or has more JSON than options.maxJsonBytes.
+/// The rest of a stream, at most maxBytes. Errors: it fails, holds more, or has more JSON than options.maxJsonBytes.
 Result<std::string> readModelStream(std::istream& stream, const ImportOptions& options,
-                                    std::size_t mostBytes = std::size_t(2) << 30);
+                                    std::size_t maxBytes = std::size_t(2) << 30);
 
 } // namespace osgGpuAnimation::gltf

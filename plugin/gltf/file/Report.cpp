@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/file/Report.h"
 
-#include <charconv>
 #include <utility>
-#include <vector>
 
 namespace osgGpuAnimation::gltf
 {
@@ -11,12 +9,12 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
-const std::size_t mostOfAKind = 100;
+const std::size_t maxOfAKind = 100;
 
 void add(std::vector<std::string>& list, std::size_t& count, std::string message)
 {
-    if (count < mostOfAKind) list.push_back(std::move(message));
-    if (count == mostOfAKind) list.push_back("more of the kind follow and are not listed");
+    if (count < maxOfAKind) list.push_back(std::move(message));
+    if (count == maxOfAKind) list.push_back("more of the kind follow and are not listed");
     ++count;
 }
 
@@ -40,11 +38,11 @@ void Report::unmet(const std::string& message, const std::string& consequence)
     warn(message + "; " + consequence);
 }
 
-std::string printable(std::string_view text, std::size_t most)
+std::string printable(std::string_view text, std::size_t max)
 {
     static const char digits[] = "0123456789abcdef";
     std::string out;
-    for (char c : text.substr(0, most))
+    for (char c : text.substr(0, max))
     {
         const unsigned char byte = static_cast<unsigned char>(c);
         if (byte >= 0x20 && byte < 0x7f)
@@ -52,7 +50,7 @@ std::string printable(std::string_view text, std::size_t most)
         else
             out += std::string("\\x") + digits[byte >> 4] + digits[byte & 15];
     }
-    if (text.size() > most) out += "...";
+    if (text.size() > max) out += "...";
     return out;
 }
 
@@ -67,9 +65,14 @@ std::string numberText(double number)
     return std::string(text, std::to_chars(text, text + sizeof(text), number).ptr);
 }
 
+Error unexpected(const std::string& expected, const std::string& found)
+{
+    return Error{"expected " + expected + ", found " + found};
+}
+
 Error fault(std::string_view element, std::string_view expected, std::string_view found)
 {
-    return Error{std::string(element) + ": expected " + std::string(expected) + ", found " + std::string(found)};
+    return Error{std::string(element) + ": " + unexpected(std::string(expected), std::string(found)).message};
 }
 
 } // namespace osgGpuAnimation::gltf

@@ -46,14 +46,15 @@ private:
 
 // How messages name the parts of a document: accessors[3].byteOffset, animations[2].channels[4].target.path.
 
-inline std::string elementName(std::string_view collection, std::size_t index)
+template <typename Index>
+std::string elementName(std::string_view collection, Index index)
 {
     return std::string(collection) + '[' + std::to_string(index) + ']';
 }
 
 /// elementName("animations", 2, "channels", 4) is animations[2].channels[4].
-template <typename... Rest>
-std::string elementName(std::string_view collection, std::size_t index, std::string_view inner, const Rest&... rest)
+template <typename Index, typename... Rest>
+std::string elementName(std::string_view collection, Index index, std::string_view inner, const Rest&... rest)
 {
     std::string name = elementName(collection, index) + '.';
     if constexpr (sizeof...(Rest) == 0)
@@ -73,8 +74,7 @@ struct PrimitiveName
     /// meshes[3].primitives[0].attributes, or with a target meshes[3].primitives[0].targets[1].
     std::string attributes(int target = -1) const
     {
-        return text() + '.' +
-               (target < 0 ? std::string("attributes") : elementName("targets", static_cast<std::size_t>(target)));
+        return text() + '.' + (target < 0 ? std::string("attributes") : elementName("targets", target));
     }
 };
 
@@ -85,15 +85,19 @@ inline std::string quoted(const std::string& text)
     return quoted(std::string_view(text));
 } // not std::quoted
 /// The same without the quotation marks.
-std::string printable(std::string_view text, std::size_t most = 80);
+std::string printable(std::string_view text, std::size_t max = 80);
 /// The shortest text that reads back as the number: 8, 0.5, 1e+30.
 std::string numberText(double number);
 
 /// `element: expected …, found …`
 Error fault(std::string_view element, std::string_view expected, std::string_view found);
 
+/// `expected …, found …`, for callers that name the element.
+Error unexpected(const std::string& expected, const std::string& found);
+
 /// An element with its name in the file, for messages: `animations[2] "Run"`.
-inline std::string namedElement(std::string_view collection, std::size_t index, std::string_view name)
+template <typename Index>
+std::string namedElement(std::string_view collection, Index index, std::string_view name)
 {
     return elementName(collection, index) + (name.empty() ? "" : ' ' + quoted(name));
 }

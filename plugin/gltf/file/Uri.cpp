@@ -7,7 +7,6 @@
 #include <array>
 #include <cctype>
 #include <cstdint>
-#include <filesystem>
 #include <system_error>
 #include <utility>
 
@@ -30,15 +29,10 @@ struct DataUriParts
     std::size_t bytes() const
     {
         if (isBase64) return payload.size() / 4 * 3 + payload.size() % 4 * 3 / 4;
-        const auto encoded = std::size_t(std::count(payload.begin(), payload.end(), '%'));
+        const auto encoded = static_cast<std::size_t>(std::count(payload.begin(), payload.end(), '%'));
         return payload.size() - 2 * std::min(encoded, payload.size() / 3);
     }
 };
-
-Error unexpected(const std::string& expected, const std::string& found)
-{
-    return Error{"expected " + expected + ", found " + found};
-}
 
 int hexDigit(char c)
 {
@@ -48,23 +42,23 @@ int hexDigit(char c)
     return -1;
 }
 
-/// Out: a string or bytes, of which no more than `most` are kept.
+/// Out: a string or bytes, of which no more than `max` are kept.
 template <typename Out>
-Result<Out> decodePercent(std::string_view text, std::size_t most)
+Result<Out> decodePercent(std::string_view text, std::size_t max)
 {
     Out out;
-    out.reserve(most);
+    out.reserve(max);
     for (std::size_t i = 0; i < text.size(); ++i)
     {
         if (text[i] != '%')
         {
-            if (out.size() < most) out.push_back(static_cast<typename Out::value_type>(text[i]));
+            if (out.size() < max) out.push_back(static_cast<typename Out::value_type>(text[i]));
             continue;
         }
         const int high = i + 1 < text.size() ? hexDigit(text[i + 1]) : -1;
         const int low = i + 2 < text.size() ? hexDigit(text[i + 2]) : -1;
         if (high < 0 || low < 0) return unexpected("two hexadecimal digits after %", quoted(text.substr(i, 3)));
-        if (out.size() < most) out.push_back(static_cast<typename Out::value_type>(high * 16 + low));
+        if (out.size() < max) out.push_back(static_cast<typename Out::value_type>(high * 16 + low));
         i += 2;
     }
     return out;
@@ -78,7 +72,7 @@ constexpr std::array<std::uint8_t, 256> base64Values()
         values[i] = 255;
     const std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     for (std::size_t i = 0; i < digits.size(); ++i)
-        values[std::size_t(digits[i])] = std::uint8_t(i);
+        values[static_cast<std::size_t>(digits[i])] = static_cast<std::uint8_t>(i);
     return values;
 }
 
@@ -89,11 +83,11 @@ std::string_view withoutPadding(std::string_view base64)
     return base64;
 }
 
-Result<Bytes> decodeBase64(std::string_view text, std::size_t most)
+Result<Bytes> decodeBase64(std::string_view text, std::size_t max)
 {
     static constexpr std::array<std::uint8_t, 256> values = base64Values();
     Bytes out;
-    out.reserve(most);
+    out.reserve(max);
     std::uint32_t bits = 0;
     int count = 0;
     for (std::size_t i = 0; i < text.size(); ++i)
@@ -106,7 +100,7 @@ Result<Bytes> decodeBase64(std::string_view text, std::size_t most)
         count += 6;
         if (count < 8) continue;
         count -= 8;
-        if (out.size() < most) out.push_back(static_cast<unsigned char>(bits >> count));
+        if (out.size() < max) out.push_back(static_cast<unsigned char>(bits >> count));
     }
     if (count == 6) return unexpected("base64", "data that ends in the middle of a byte");
     return out;
@@ -150,6 +144,11 @@ Error outside(const std::string& path)
                  " (the option allowOutsideFiles lets it be read)"};
 }
 
+fs::path folderOf(const fs::path& file)
+{
+    return file.has_parent_path() ? file.parent_path() : ".";
+}
+
 bool leavesFolder(const fs::path& relative)
 {
     const fs::path normal = relative.lexically_normal();
@@ -175,12 +174,12 @@ Result<std::size_t> bytesOfDataUri(std::string_view uri)
     return parts.value().bytes();
 }
 
-Result<DataUri> decodeDataUri(std::string_view uri, std::size_t most)
+Result<DataUri> decodeDataUri(std::string_view uri, std::size_t max)
 {
     const Result<DataUriParts> parts = splitDataUri(uri);
     if (!parts) return parts.error();
     const auto& [kind, payload, isBase64] = parts.value();
-    const std::size_t kept = std::min(most, parts.value().bytes());
+    const std::size_t kept = std::min(max, parts.value().bytes());
     Result<Bytes> bytes = isBase64 ? decodeBase64(payload, kept) : decodePercent<Bytes>(payload, kept);
     if (!bytes) return bytes.error();
     return DataUri{std::string(kind.substr(0, kind.find(';'))), std::move(bytes).value()};
@@ -209,7 +208,12 @@ Result<RegularFile> ModelFolder::open(std::string_view uri) const
     if (!path) return path.error();
     if (_modelFile.empty())
         return Error{"expected data in the model itself, which came without a file name, found " + quoted(uri)};
-    const Result<std::string> resolved = resolve(path.value());
+    return openPath(path.value());
+}
+
+Result<RegularFile> ModelFolder::openPath(const std::string& path) const
+{
+    const Result<std::string> resolved = resolve(path);
     if (!resolved) return resolved.error();
     Result<RegularFile> file = RegularFile::open(resolved.value());
     if (file && file.value().isSameAs(_modelFile))
@@ -219,8 +223,7 @@ Result<RegularFile> ModelFolder::open(std::string_view uri) const
 
 Result<std::string> ModelFolder::find(const std::string& path) const
 {
-    fs::path folder = fs::path(_modelFile).parent_path();
-    if (folder.empty()) folder = ".";
+    const fs::path folder = folderOf(_modelFile);
     std::error_code error;
     fs::path file = fs::canonical(folder / path, error);
     if (error) file = fs::canonical(path, error);
@@ -235,8 +238,7 @@ Result<std::string> ModelFolder::resolve(const std::string& path) const
 {
     // Check the text first: files outside the folder are never looked up.
     if (!_allowOutsideFiles && leavesFolder(path)) return outside(path);
-    fs::path folder = fs::path(_modelFile).parent_path();
-    if (folder.empty()) folder = ".";
+    const fs::path folder = folderOf(_modelFile);
     std::error_code error;
     const fs::path file = fs::canonical(folder / path, error);
     if (error == std::errc::no_such_file_or_directory || error == std::errc::not_a_directory)

@@ -29,9 +29,9 @@ bool isDataUri(std::string_view uri);
 /// Error: no comma.
 Result<std::size_t> bytesOfDataUri(std::string_view uri);
 
-/// Decodes data:[MIME type][;base64],… of any MIME type. Keeps the first `most` bytes; checks the rest for faults.
+/// Decodes data:[MIME type][;base64],… of any MIME type. Keeps the first `max` bytes; checks the rest for faults.
 /// Errors: no comma, a character that is not base64.
-Result<DataUri> decodeDataUri(std::string_view uri, std::size_t most);
+Result<DataUri> decodeDataUri(std::string_view uri, std::size_t max);
 
 /// The path of a relative URI: percent-encoding is decoded, a plus sign stays a plus sign.
 /// Errors: empty, a scheme or drive letter, an incomplete percent-encoding, an encoded NUL, a backslash.
@@ -51,6 +51,8 @@ public:
     /// Opens the file of a URI that is not a data URI. Errors are `expected …, found …` or name the file.
     Result<RegularFile> open(std::string_view uri) const;
 
+    /// The same for a path in place of a URI.
+    Result<RegularFile> openPath(const std::string& path) const;
     /// The path, without symbolic links, of a file that the user named: relative to the folder, else to the current
     /// one. Errors: it does not exist, is outside the folder, or is the model file itself.
     Result<std::string> find(const std::string& path) const;

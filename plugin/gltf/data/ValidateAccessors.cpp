@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/data/Validation.h"
+#include "gltf/file/Elements.h"
+
+#include "gltf/data/Accessor.h"
+#include "gltf/file/Report.h"
+
+#include <cstdint>
+#include <cstring>
+#include <string>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+using Model = tinygltf::Model;
+
+/// A run of elements within a buffer view.
+struct Run
+{
+    int bufferView = -1;
+    std::size_t byteOffset = 0;
+    std::size_t count = 0;
+    std::size_t elementBytes = 0; ///< without padding behind the element
+    std::size_t stride = 0;
+    std::size_t alignment = 1;
+};
+
+std::optional<Error> validateBufferViews(const Model& model)
+{
+    for (std::size_t i = 0; i < model.bufferViews.size(); ++i)
+    {
+        const tinygltf::BufferView& view = model.bufferViews[i];
+        const std::size_t size = elementOf(model.buffers, view.buffer).data.size();
+        if (size == 0)
+            return fault(elementName("buffers", view.buffer),
+                         "a uri or a BIN chunk with the data of " + elementName("bufferViews", i), "neither");
+        if (view.byteOffset > size)
+            return fault(elementName("bufferViews", i) + ".byteOffset",
+                         "at most the buffer's " + std::to_string(size) + " bytes", std::to_string(view.byteOffset));
+        if (view.byteLength > size - view.byteOffset)
+            return fault(elementName("bufferViews", i) + ".byteLength",
+                         "at most the " + std::to_string(size - view.byteOffset) + " bytes left in the buffer",
+                         std::to_string(view.byteLength));
+    }
+    return std::nullopt;
+}
+
+std::optional<Error> validateRun(const Model& model, const Run& run, const std::string& name)
+{
+    const tinygltf::BufferView& view = elementOf(model.bufferViews, run.bufferView);
+    const std::string viewName = elementName("bufferViews", run.bufferView);
+    if (run.stride < run.elementBytes)
+        return fault(name, "a byteStride of " + viewName + " of at least " + std::to_string(run.elementBytes),
+                     std::to_string(run.stride));
+    if ((view.byteOffset + run.byteOffset) % run.alignment != 0 || run.stride % run.alignment != 0)
+        return fault(name + ".byteOffset", "elements aligned to " + std::to_string(run.alignment) + " bytes",
+                     std::to_string(view.byteOffset + run.byteOffset) + " in the buffer, stride " +
+                         std::to_string(run.stride));
+    // None of these wraps: counts are below 2^53, strides below 2^11.
+    const std::size_t bytes = (run.count - 1) * run.stride + run.elementBytes;
+    if (run.byteOffset > view.byteLength || bytes > view.byteLength - run.byteOffset)
+        return fault(name, "data within the " + std::to_string(view.byteLength) + " bytes of " + viewName,
+                     std::to_string(run.count) + " elements from byte " + std::to_string(run.byteOffset) + " on");
+    return std::nullopt;
+}
+
+const unsigned char* dataOf(const Model& model, const Run& run)
+{
+    const tinygltf::BufferView& view = elementOf(model.bufferViews, run.bufferView);
+    return elementOf(model.buffers, view.buffer).data.data() + view.byteOffset + run.byteOffset;
+}
+
+/// True if one of the floats is NaN or infinite: all bits of the exponent are set.
+bool hasNonFinite(const unsigned char* data, std::size_t count)
+{
+    std::uint32_t found = 0;
+    for (std::size_t i = 0; i < count; ++i)
+    {
+        std::uint32_t bits;
+        std::memcpy(&bits, data + 4 * i, 4);
+        found |= static_cast<std::uint32_t>((bits & 0x7f800000u) == 0x7f800000u);
+    }
+    return found != 0;
+}
+
+std::optional<Error> validateFloats(const Model& model, const Run& run, const std::string& name)
+{
+    const unsigned char* const data = dataOf(model, run);
+    const std::size_t numbers = run.elementBytes / 4;
+    if (run.stride == run.elementBytes && !hasNonFinite(data, run.count * numbers)) return std::nullopt;
+    for (std::size_t i = 0; i < run.count; ++i)
+        if (hasNonFinite(data + i * run.stride, numbers))
+            return fault(name, "finite numbers", "NaN or infinity in element " + std::to_string(i));
+    return std::nullopt;
+}
+
+std::optional<Error> validateSparseIndices(const Model& model, const Run& run, std::size_t count,
+                                           const std::string& name)
+{
+    const unsigned char* const data = dataOf(model, run);
+    std::size_t previous = 0;
+    for (std::size_t i = 0; i < run.count; ++i)
+    {
+        const std::size_t index = indexAt(data, run.elementBytes, i);
+        if (index >= count) return fault(name, "indices below " + std::to_string(count), std::to_string(index));
+        if (i > 0 && index <= previous)
+            return fault(name, "indices that increase", std::to_string(index) + " after " + std::to_string(previous));
+        previous = index;
+    }
+    return std::nullopt;
+}
+
+std::optional<Error> validateSparse(const Model& model, const tinygltf::Accessor& accessor, const std::string& name)
+{
+    const auto& sparse = accessor.sparse;
+    const std::size_t count = static_cast<std::size_t>(sparse.count);
+    if (count > accessor.count)
+        return fault(name + ".count", "at most " + std::to_string(accessor.count), std::to_string(count));
+    const std::size_t indexBytes = componentBytes(sparse.indices.componentType);
+    const Run indices = {sparse.indices.bufferView,
+                         static_cast<std::size_t>(sparse.indices.byteOffset),
+                         count,
+                         indexBytes,
+                         indexBytes,
+                         indexBytes};
+    const Run values = {sparse.values.bufferView,
+                        static_cast<std::size_t>(sparse.values.byteOffset),
+                        count,
+                        lastElementBytes(accessor),
+                        elementBytes(accessor),
+                        componentBytes(accessor.componentType)};
+    std::optional<Error> error = validateRun(model, indices, name + ".indices");
+    if (!error) error = validateRun(model, values, name + ".values");
+    if (!error) error = validateSparseIndices(model, indices, accessor.count, name + ".indices");
+    if (!error && accessor.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT)
+        error = validateFloats(model, values, name + ".values");
+    return error;
+}
+
+std::optional<Error> validateBase(const Model& model, const tinygltf::Accessor& accessor, const std::string& name)
+{
+    const std::size_t byteStride = elementOf(model.bufferViews, accessor.bufferView).byteStride;
+    const Run run = {accessor.bufferView,
+                     accessor.byteOffset,
+                     accessor.count,
+                     lastElementBytes(accessor),
+                     byteStride != 0 ? byteStride : elementBytes(accessor),
+                     componentBytes(accessor.componentType)};
+    std::optional<Error> error = validateRun(model, run, name);
+    if (!error && accessor.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT) error = validateFloats(model, run, name);
+    return error;
+}
+
+/// The limit for accessors without data, so that a tiny file does not decode into gigabytes of zeros: 64 MiB, plus the
+/// size of 64 morph targets over the document's data. Separate from the budget, which limits all accessors.
+std::size_t maxImpliedBytes(const Model& model)
+{
+    std::size_t bytes = std::size_t(64) << 20;
+    for (const tinygltf::Buffer& buffer : model.buffers)
+        bytes += buffer.data.size() * 64;
+    return bytes;
+}
+
+} // namespace
+
+std::optional<Error> validateAccessors(const Model& model, std::size_t first, MemoryBudget& budget)
+{
+    if (std::optional<Error> error = validateBufferViews(model)) return error;
+    MemoryBudget implied(maxImpliedBytes(model));
+    for (std::size_t i = first; i < model.accessors.size(); ++i)
+    {
+        const tinygltf::Accessor& accessor = model.accessors[i];
+        const std::size_t bytes = accessor.count * elementBytes(accessor);
+        std::optional<Error> error;
+        if (accessor.bufferView >= 0)
+            error = validateBase(model, accessor, elementName("accessors", i));
+        else if (!implied.take(bytes))
+            error = fault(elementName("accessors", i) + ".count",
+                          "at most " + std::to_string(implied.limit()) + " bytes of zeros without data in all",
+                          std::to_string(bytes));
+        if (!error && !budget.take(bytes))
+            error = fault(elementName("accessors", i) + ".count", budget.limitText(), std::to_string(bytes));
+        if (!error && accessor.sparse.isSparse)
+            error = validateSparse(model, accessor, elementName("accessors", i) + ".sparse");
+        if (error) return error;
+    }
+    return std::nullopt;
+}
+
+} // namespace osgGpuAnimation::gltf

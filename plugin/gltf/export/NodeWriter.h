@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "gltf/export/GlbWriter.h"
+#include "gltf/file/Report.h"
+#include "gltf/import/NodeTransform.h"
+
+#include <osgGpuAnimation/animation/bounds/TransformBound.h>
+#include <osgGpuAnimation/math/JointTransform.h>
+#include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
+
+#include <osg/Matrixd>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace osgGpuAnimation::gltf
+{
+
+/// A place of the scene graph, which becomes a node of the file as soon as a mesh, light or camera needs it.
+struct NodePlace
+{
+    NodePlace* above = nullptr; ///< null: the scene
+    NodeTransform toAbove;
+    std::string name;                ///< may be empty
+    std::optional<std::size_t> node; ///< once it is needed
+    std::size_t depth = 0;           ///< nodes from a root to the place's own
+    TransformBound reach;            ///< from the place to the scene
+};
+
+/// True if the import reads points within the radius at such a place. It bounds some products in another way, hence the
+/// factor.
+inline bool isNear(const TransformBound& reach, double radius)
+{
+    return 2.0 * std::max({reach.stretch, reach.distance, reach.of(radius)}) <= TransformBound::maxNumber &&
+           std::isfinite(reach.stretch + reach.distance);
+}
+
+/// Writes the nodes of a file (glTF 2.0, section 3.5), each as T · R · S. A matrix that shears becomes two nodes; one
+/// that is not affine, or takes what is below farther out than the import reads, is left out, with a warning.
+class NodeWriter
+{
+public:
+    /// The largest depth of a place with places below it: the import's limit without one place that shears and a node
+    /// of its own for a mesh or light.
+    static constexpr std::size_t maxDepth = maxNodeDepth - 4;
+
+    NodeWriter(GlbWriter& writer, Report& report) : _writer(writer), _report(report) {}
+
+    /// A place that exists as long as the writer. above: null: the scene.
+    NodePlace& place(NodePlace* above, const osg::Matrixd& toAbove, const std::string& name);
+    /// The place of a node that exists.
+    NodePlace& placeOf(std::size_t node);
+
+    /// A node of its own. above: null: the scene.
+    std::size_t add(const std::string& name, const JointTransform& toAbove, NodePlace* above);
+    /// The node of a place.
+    std::size_t nodeOf(NodePlace& place);
+    /// The node at the place that gets the member: the place's own if it does not have it, else a new one below it,
+    /// with the name. place: null: the scene.
+    std::size_t nodeFor(NodePlace* place, const char* member, const std::string& name);
+
+    /// Neither the node nor those below it are drawn (KHR_node_visibility).
+    void hide(std::size_t node);
+
+    nlohmann::json& at(std::size_t node) { return _writer.document["nodes"][node]; }
+
+private:
+    std::size_t add(const std::string& name, const NodeTransform& toAbove, NodePlace* above);
+
+    GlbWriter& _writer;
+    Report& _report;
+    std::deque<NodePlace> _places; ///< keeps addresses
+    // By node:
+    std::vector<std::size_t> _depths;     ///< the nodes from a root to it
+    std::vector<TransformBound> _reaches; ///< from it to the scene
+};
+
+} // namespace osgGpuAnimation::gltf

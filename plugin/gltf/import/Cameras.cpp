@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/import/Cameras.h"
+
+#include "gltf/data/AnimationPointers.h"
+#include "gltf/data/UniqueNames.h"
+#include "gltf/file/Elements.h"
+#include "gltf/file/Report.h"
+
+#include <osgGpuAnimation/nodes/viewing/StartView.h>
+
+#include <osg/Math>
+#include <osg/ValueObject>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+osg::ref_ptr<osg::CameraView> makeView(const tinygltf::Camera& camera)
+{
+    osg::ref_ptr<osg::CameraView> view = new osg::CameraView;
+    if (camera.type == "perspective")
+    {
+        view->setFieldOfView(osg::RadiansToDegrees(camera.perspective.yfov));
+        view->setFieldOfViewMode(osg::CameraView::VERTICAL);
+        return view;
+    }
+    view->setFieldOfViewMode(osg::CameraView::UNCONSTRAINED);
+    view->setUserValue(orthographicHeightName, 2.0 * std::abs(camera.orthographic.ymag));
+    return view;
+}
+
+} // namespace
+
+std::vector<ImportedCamera> makeCameras(const tinygltf::Model& model, const NodeTree& tree)
+{
+    std::vector<ImportedCamera> cameras;
+    UniqueNames names;
+    const std::vector<bool> areAnimated = animatedObjects(model, PropertyMember::Object::Camera, model.cameras.size());
+    for (std::size_t index = 0; index < model.nodes.size(); ++index)
+    {
+        const tinygltf::Node& node = model.nodes[index];
+        if (!tree.drawn[index] || node.camera < 0) continue;
+        const tinygltf::Camera& camera = elementOf(model.cameras, node.camera);
+        if (camera.type.empty()) continue;
+        const std::string& name = camera.name.empty() ? node.name : camera.name;
+        cameras.push_back({node.camera, static_cast<int>(index), makeView(camera)});
+        if (elementOf(areAnimated, node.camera)) markCamera(*cameras.back().view, node.camera);
+        cameras.back().view->setName(names.unique(name.empty() ? "camera " + std::to_string(node.camera) : name));
+    }
+    return cameras;
+}
+
+Result<std::size_t> chooseCamera(const std::vector<ImportedCamera>& cameras, const std::string& nameOrNumber)
+{
+    const int number = parsedNumber<int>(nameOrNumber).value_or(-1);
+    const auto named =
+        std::find_if(cameras.begin(), cameras.end(),
+                     [&](const ImportedCamera& camera) { return camera.view->getName() == nameOrNumber; });
+    const auto numbered = std::find_if(cameras.begin(), cameras.end(),
+                                       [&](const ImportedCamera& camera) { return camera.camera == number; });
+    const auto found = named != cameras.end() ? named : numbered;
+    if (found != cameras.end()) return static_cast<std::size_t>(found - cameras.begin());
+    std::string names;
+    for (const ImportedCamera& camera : cameras)
+        names += (names.empty() ? "" : ", ") + quoted(camera.view->getName());
+    return Error{"camera " + quoted(nameOrNumber) +
+                 " was asked for; the scene's cameras are: " + (names.empty() ? "none" : names)};
+}
+
+} // namespace osgGpuAnimation::gltf

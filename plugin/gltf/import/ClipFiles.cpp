@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/import/ClipFiles.h"
+
+#include "gltf/data/LoadDocument.h"
+#include "gltf/document/JsonReader.h"
+#include "gltf/file/Elements.h"
+#include "gltf/file/Uri.h"
+#include "gltf/import/Clips.h"
+#include "gltf/import/Joints.h"
+#include "gltf/import/NodeTree.h"
+
+#include <osgGpuAnimation/animation/bounds/TransformBound.h>
+#include <osgGpuAnimation/authoring/retarget/ClipRetargeter.h>
+#include <osgGpuAnimation/authoring/retarget/JointNames.h>
+#include <osgGpuAnimation/authoring/WithClipsOf.h>
+#include <osgGpuAnimation/nodes/properties/PropertyPointer.h>
+
+#include <osgDB/FileNameUtils>
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+#include <string_view>
+#include <unordered_map>
+#include <unordered_set>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+constexpr std::size_t maxNameBytes = std::size_t(1) << 20; // of a file of joint names
+
+/// "Motion" is Assimp's name for the clip of each BVH.
+bool isGenericName(const std::string& clipName)
+{
+    return clipName.empty() || clipName.find("mixamo.com") != std::string::npos || clipName == "Take 001" ||
+           clipName == "Motion";
+}
+
+/// By its name or its first bytes. What is no regular file counts as one: reading it has the message.
+bool isGltf(const std::string& path)
+{
+    const std::string extension = osgDB::getLowerCaseFileExtension(path);
+    const Result<RegularFile> file = RegularFile::open(path);
+    char beginning[4] = {};
+    if (extension == "gltf" || extension == "glb" || !file || !file.value().read(beginning, sizeof beginning))
+        return true;
+    return std::string_view(beginning, sizeof beginning) == "glTF" || beginning[0] == '{';
+}
+
+/// The file as glTF. subject: begins each warning.
+Result<std::string> readAsGltf(const std::string& path, const ImportOptions& options, const std::string& subject,
+                               Report& report)
+{
+    if (!options.otherFormats || isGltf(path)) return readModelFile(path, options);
+    Messages messages;
+    Report ownReport(messages);
+    Result<std::string> bytes = options.otherFormats(path, options, ownReport);
+    for (const std::string& warning : messages.warnings)
+        if (warning.rfind("picture ", 0) != 0) report.warn(subject + ": " + warning); // clips need no pictures
+    return bytes;
+}
+
+/// The names of the objects that have such properties, by number.
+std::vector<std::string> objectNames(const tinygltf::Model& model, PropertyMember::Object object)
+{
+    switch (object)
+    {
+    case PropertyMember::Object::Material:
+        return namesIn(model.materials);
+    case PropertyMember::Object::Light:
+        return namesIn(model.lights);
+    case PropertyMember::Object::Camera:
+        return namesIn(model.cameras);
+    case PropertyMember::Object::Node:
+        return namesIn(model.nodes);
+    }
+    return {};
+}
+
+/// The pointer to the same property of the model's object of the same name. If there is none, a text that names no
+/// property. Objects without names are matched by number.
+std::string pointerIn(const tinygltf::Model& model, const tinygltf::Model& file, const std::string& pointer)
+{
+    const std::optional<PropertyPointer> property = PropertyPointer::parse(pointer);
+    if (!property) return pointer;
+    const auto index = static_cast<std::size_t>(property->index);
+    const std::vector<std::string> names = objectNames(file, property->member->object);
+    const std::vector<std::string> others = objectNames(model, property->member->object);
+    const int counterpart = findCounterparts(names, others, {})[index];
+    if (counterpart >= 0) return PropertyPointer::text(*property->member, counterpart);
+    if (!names[index].empty()) return pointer + " of " + names[index];
+    return index < others.size() && others[index].empty() ? pointer : pointer + " without a name";
+}
+
+/// The joints, morphs and clips of a file. target: see readClipFiles(). subject: begins each of the file's warnings.
+Result<std::shared_ptr<const AnimationSet>> readSet(const std::string& path, const ImportOptions& options,
+                                                    const tinygltf::Model* target, const std::string& subject,
+                                                    Report& report)
+{
+    ImportOptions own = options;
+    own.scene.reset();
+    const Result<std::string> bytes = readAsGltf(path, own, subject, report);
+    if (!bytes) return bytes.error();
+    Messages messages;
+    Report ownReport(messages);
+    const Result<tinygltf::Model> model = loadDocument(bytes.value(), path, own, messages);
+    if (!model) return model.error();
+    const Result<NodeTree> tree = buildNodeTree(model.value(), own);
+    if (!tree) return tree.error();
+    // A joint that no clip moves is a joint nevertheless: without skins, nothing but its name tells.
+    std::vector<bool> isPlain;
+    for (const tinygltf::Node& node : model.value().nodes)
+        isPlain.push_back(node.mesh < 0);
+    const Result<Joints> joints = buildJoints(model.value(), tree.value(), isPlain);
+    if (!joints) return joints.error();
+    Morphs morphs = readMorphs(model.value());
+    MemoryBudget budget(own.maxDecodedBytes);
+    Clips clips = readClips(model.value(), joints.value(), morphs, budget, ownReport);
+    for (std::size_t clip = 0; clip < clips.clips.size(); ++clip)
+        if (isGenericName(elementOf(model.value().animations, clips.animationOfClip[clip]).name))
+            clips.clips[clip] = clips.clips[clip].withName(osgDB::getStrippedName(path));
+    for (MorphWeights& morph : morphs.weights)
+        if (target && morph.isProperty()) morph.name = pointerIn(*target, model.value(), morph.name);
+    for (const std::string& warning : messages.warnings)
+        report.warn(subject + ": " + warning);
+    if (clips.clips.empty()) return Error{"the file has no clips"};
+    return AnimationSet::create({joints.value().skeleton, {}, {}, morphs.weights, std::move(clips.clips)});
+}
+
+/// Those of the names that the set's skins use; all, if it has no skins.
+std::vector<std::string> namesInSkins(const AnimationSet& set, const std::vector<std::string>& names)
+{
+    if (set.skins().empty()) return names;
+    std::unordered_set<std::string> inSkins;
+    for (const Skin& skin : set.skins())
+        for (const int joint : skin.joints)
+            inSkins.insert(set.skeleton().joint(static_cast<std::size_t>(joint)).name);
+    std::vector<std::string> chosen;
+    std::copy_if(names.begin(), names.end(), std::back_inserter(chosen),
+                 [&](const std::string& name) { return inSkins.count(name) > 0; });
+    return chosen;
+}
+
+std::string namesText(const std::vector<std::string>& names)
+{
+    return quotedNames(names, [](const std::string& name) { return printable(name); });
+}
+
+/// The joints of a skeleton by name, without namespaces.
+class JointsByName
+{
+public:
+    explicit JointsByName(const Skeleton& skeleton)
+    {
+        for (const Joint& joint : skeleton.joints())
+        {
+            _exact.emplace(joint.name, &joint.name);
+            _names.emplace(bareJointName(joint.name), &joint.name);
+        }
+    }
+
+    /// The joint's own name, of the first joint if there are several; null: there is none.
+    const std::string* find(const std::string& name) const
+    {
+        if (const auto exact = _exact.find(name); exact != _exact.end()) return exact->second;
+        const auto found = _names.find(bareJointName(name));
+        return found == _names.end() ? nullptr : found->second;
+    }
+
+private:
+    std::unordered_map<std::string, const std::string*> _exact;
+    std::unordered_map<std::string, const std::string*> _names; ///< by bare name
+};
+
+RetargetOptions retargetOptions(const ClipJoints& joints, const Skeleton& model, const Skeleton& clips)
+{
+    RetargetOptions options;
+    if (joints.counterparts.empty()) return options;
+    const JointsByName others(clips);
+    for (const Joint& joint : model.joints())
+    {
+        const auto given = joints.counterparts.find(bareJointName(joint.name));
+        if (given == joints.counterparts.end() || joint.name.empty()) continue;
+        const std::string* const other = others.find(given->second);
+        if (other || given->second.empty()) options.counterparts[joint.name] = other ? *other : "";
+    }
+    return options;
+}
+
+Result<JsonTree> readNames(const ModelFolder& folder, const ImportOptions& options, Report& report)
+{
+    const Result<std::string> path = folder.find(options.clipJoints);
+    if (!path) return path.error();
+    ImportOptions own = options;
+    own.maxJsonBytes = std::min(own.maxJsonBytes, maxNameBytes);
+    const Result<std::string> bytes = readModelFile(path.value(), own);
+    return bytes ? readJson(bytes.value(), own, report) : bytes.error();
+}
+
+} // namespace
+
+ClipJoints readClipJoints(const std::string& modelFile, const ImportOptions& options, Report& report)
+{
+    ClipJoints joints;
+    if (options.clipJoints.empty()) return joints;
+    joints.name = "clipJoints " + quoted(options.clipJoints);
+    const ModelFolder folder(modelFile, options.allowOutsideFiles || options.allowOutsideClips);
+    Result<JsonTree> read = readNames(folder, options, report);
+    if (!read)
+    {
+        report.unmet(joints.name + ": " + read.error().message, "joints are matched by equal names");
+        return joints;
+    }
+    JsonTree tree = std::move(read).value();
+    for (const JsonValue& member : tree.root())
+    {
+        const bool isNone = member.is(JsonTree::Type::Null);
+        if (isNone || member.is(JsonTree::Type::String))
+            joints.counterparts[bareJointName(std::string(member.key()))] = isNone ? "" : member.text();
+        else
+            report.warn(
+                fault(joints.name + ": " + quoted(member.key()), "the name of a joint or null", member.description())
+                    .message +
+                "; left out");
+    }
+    return joints;
+}
+
+void warnOfUnknownJoints(const ClipJoints& joints, const Skeleton& model, const std::vector<ClipFile>& files,
+                         Report& report)
+{
+    if (joints.counterparts.empty()) return;
+    const JointsByName own(model);
+    std::vector<JointsByName> others;
+    for (const ClipFile& file : files)
+        others.emplace_back(file.set->skeleton());
+    std::vector<std::string> notOwn, notOthers;
+    for (const auto& [name, counterpart] : joints.counterparts)
+    {
+        if (!own.find(name)) notOwn.push_back(name);
+        const bool isKnown =
+            std::any_of(others.begin(), others.end(),
+                        [&wanted = counterpart](const JointsByName& file) { return file.find(wanted); });
+        if (!counterpart.empty() && !isKnown) notOthers.push_back(counterpart);
+    }
+    if (!notOwn.empty()) report.warn(joints.name + ": the model has no joint " + namesText(notOwn));
+    if (!notOthers.empty()) report.warn(joints.name + ": no file of clips has a joint " + namesText(notOthers));
+}
+
+std::vector<ClipFile> readClipFiles(const std::string& modelFile, const ImportOptions& options, Report& report,
+                                    const tinygltf::Model* target)
+{
+    const ModelFolder folder(modelFile, options.allowOutsideFiles || options.allowOutsideClips);
+    std::vector<ClipFile> files;
+    std::unordered_set<std::string> known;
+    for (const std::string& given : options.clipsFiles)
+    {
+        const std::string name = "clips " + quoted(given);
+        const Result<std::string> path = folder.find(given);
+        Result<std::shared_ptr<const AnimationSet>> set = Error{"the file is named twice"};
+        if (!path)
+            set = path.error();
+        else if (known.insert(path.value()).second)
+            set = readSet(path.value(), options, target, name, report);
+        if (set)
+            files.push_back({name, set.value()});
+        else
+            report.unmet(name + ": " + set.error().message, leftOutText);
+    }
+    return files;
+}
+
+std::vector<bool> nodesMovedBy(const std::vector<ClipFile>& files, const ClipJoints& joints,
+                               const tinygltf::Model& model)
+{
+    std::unordered_set<std::string> moved;
+    for (const ClipFile& file : files)
+    {
+        const Skeleton& skeleton = file.set->skeleton();
+        const std::vector<bool> isMoved = JointMoves::inAnyOf(skeleton, file.set->clips());
+        for (std::size_t joint = 0; joint < isMoved.size(); ++joint)
+            if (isMoved[joint]) moved.insert(bareJointName(skeleton.joint(joint).name));
+    }
+    std::vector<bool> nodes(model.nodes.size(), false);
+    for (std::size_t node = 0; node < nodes.size(); ++node)
+    {
+        const std::string name = bareJointName(model.nodes[node].name);
+        const auto given = joints.counterparts.find(name);
+        const bool isGiven = given != joints.counterparts.end() && moved.count(bareJointName(given->second)) > 0;
+        nodes[node] = !name.empty() && (isGiven || moved.count(name) > 0);
+    }
+    return nodes;
+}
+
+Result<std::shared_ptr<const AnimationSet>> withClipsOf(const std::shared_ptr<const AnimationSet>& set,
+                                                        const ClipFile& file, const ClipJoints& joints,
+                                                        MemoryBudget& budget, Report& report)
+{
+    const auto refuse = [&](const std::string& why) { return Error{file.name + ": " + why}; };
+    std::size_t bytes = 0;
+    for (const Clip& clip : file.set->clips())
+        bytes += clip.keyframeCount() * clip.transformsPerTrack() * set->trackCount() * sizeof(JointTransform);
+    if (!budget.take(bytes))
+        return refuse("its clips would take " + std::to_string(bytes) + " bytes, " + budget.limitText());
+    const Result<RetargetedSet> result =
+        osgGpuAnimation::withClipsOf(*set, *file.set, retargetOptions(joints, set->skeleton(), file.set->skeleton()));
+    if (!result) return refuse(result.error().message);
+
+    const std::vector<std::string> atRest = namesInSkins(*set, result.value().atRest);
+    const std::vector<std::string>& leftOut = result.value().leftOut;
+    if (!atRest.empty())
+        report.warn(file.name + ": they have no counterpart for " + namesText(atRest) + "; kept at rest");
+    if (!leftOut.empty()) report.warn(file.name + ": the model has no counterpart for " + namesText(leftOut));
+    std::vector<Clip> clips = set->clips();
+    for (std::size_t clip = clips.size(); clip < result.value().set->clips().size(); ++clip)
+    {
+        const Clip& made = result.value().set->clips()[clip];
+        if (fits(set->skeleton(), made))
+            clips.push_back(made);
+        else
+            report.warn(file.name + ": clip " + quoted(made.name()) + " takes joints or weights " + outOfRangeText() +
+                        "; clip skipped");
+    }
+    if (clips.size() == result.value().set->clips().size()) return result.value().set;
+    if (clips.size() == set->clips().size()) return refuse("none of its clips can be played");
+    Result<std::shared_ptr<const AnimationSet>> rest = set->withClips(std::move(clips));
+    return rest ? rest : refuse(rest.error().message);
+}
+
+} // namespace osgGpuAnimation::gltf

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/Channel.h>
+#include <osgGpuAnimation/animation/detail/ControllerDetail.h>
 #include <osgGpuAnimation/animation/StateMachine.h>
 
 #include "support/ClipSets.h"
@@ -16,8 +18,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-using State = AnimationController::State;
-using LoopMode = AnimationController::LoopMode;
+using State = PlayState;
 
 constexpr std::size_t walk = 0;    // two seconds, keyframes at 0, 1, 2
 constexpr std::size_t instant = 1; // one keyframe at 0
@@ -227,7 +228,7 @@ TEST(AnimationControllerTest, refusesWhatItCannotDoAndStaysAsItWas)
     EXPECT_EQ(byIndex.error().message, "there is no clip 2; the clips are \"Walk\", \"Instant\"");
     for (double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL})
         EXPECT_FALSE(controller.setSpeed(bad));
-    EXPECT_EQ(controller.speed(), 1.0);
+    EXPECT_EQ(controller.layer(0).settings().speed, 1.0);
     EXPECT_EQ(controller.clip(), 0);
     EXPECT_EQ(shown(controller), 0.5);
 }
@@ -245,7 +246,7 @@ TEST(NullSetTest, aControllerAndAStateMachineAnswer)
         ASSERT_FALSE(played);
         EXPECT_EQ(played.error().message, "there is no clip \"Walk\"; the clips are none");
         EXPECT_EQ(controller.advance(0.5).sampleCount, 1u);
-        EXPECT_TRUE(controller.isPlainLoop());
+        EXPECT_TRUE(ControllerDetail::isPlainLoop(controller));
     }
     StateMachine machine(nullptr);
     EXPECT_EQ(machine.state(), "");

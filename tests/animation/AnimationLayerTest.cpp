@@ -2,7 +2,10 @@
 #include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/AnimationLayer.h>
 #include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/Channel.h>
+#include <osgGpuAnimation/animation/detail/ControllerDetail.h>
 #include <osgGpuAnimation/animation/JointMask.h>
+#include <osgGpuAnimation/animation/LayerSnapshot.h>
 #include <osgGpuAnimation/animation/playback/BlendList.h>
 #include <osgGpuAnimation/authoring/WithRootMotion.h>
 
@@ -107,9 +110,9 @@ TEST(AnimationLayerTest, badInputIsRefusedOrClamped)
     EXPECT_FALSE(layer.play("Fly"));
     const auto other = setOf(oneJoint());
     ASSERT_TRUE(layer.setMask(JointMask(*set, 0.5f)));
-    const std::uint32_t mask = layer.mask();
+    const std::uint32_t mask = ControllerDetail::maskNumber(layer);
     EXPECT_FALSE(layer.setMask(JointMask(*other, 1.0f)));
-    EXPECT_EQ(layer.mask(), mask);
+    EXPECT_EQ(ControllerDetail::maskNumber(layer), mask);
     EXPECT_EQ(controller.instruction().sampleCount, 1u);
     AnimationController moved(other, controller);
     EXPECT_EQ(moved.layerCount(), controller.layerCount());
@@ -152,9 +155,9 @@ TEST(AnimationLayerTest, anythingOutOfTheOrdinaryIsNoPlainLoop)
         {"a clip at another speed",
          [](AnimationController& c)
          {
-             LayerSnapshot kept = c.layer(0).snapshot();
+             LayerSnapshot kept = LayerSnapshot::of(c.layer(0));
              kept.activeClips[0].speed = 2.0;
-             (void)c.layer(0).restore(kept);
+             (void)kept.restoreTo(c.layer(0));
          }},
         {"a space",
          [](AnimationController& c) {
@@ -167,13 +170,13 @@ TEST(AnimationLayerTest, anythingOutOfTheOrdinaryIsNoPlainLoop)
         ASSERT_TRUE(controller.play(1));
         controller.setSpeed(-3.0);
         controller.pause();
-        EXPECT_TRUE(controller.isPlainLoop());
+        EXPECT_TRUE(ControllerDetail::isPlainLoop(controller));
         change(controller);
-        EXPECT_FALSE(controller.isPlainLoop()) << name;
+        EXPECT_FALSE(ControllerDetail::isPlainLoop(controller)) << name;
     }
     AnimationController moving(withRootMotion(*set, "hips").value());
     ASSERT_TRUE(moving.play(1));
-    EXPECT_FALSE(moving.isPlainLoop()) << "root motion";
+    EXPECT_FALSE(ControllerDetail::isPlainLoop(moving)) << "root motion";
 }
 
 // A clip that does not return to where it began, so that its first frame is not its last.
@@ -338,7 +341,7 @@ TEST(AnimationLayerTest, whateverIsAskedTheInstructionStaysInOrder)
             isReferred = (sample.control & POSE_SAMPLE_REFERENCE) != 0;
         }
         ASSERT_FALSE(isReferred);
-        ASSERT_TRUE(layer.phase() >= 0.0 && layer.phase() <= 1.0);
+        ASSERT_TRUE(layer.playback().phase() >= 0.0 && layer.playback().phase() <= 1.0);
         for (const JointTransform& track : mixed(controller))
             ASSERT_TRUE(track.toMatrix().isFinite());
     }
@@ -365,7 +368,8 @@ TEST(LayerSnapshotTest, copiesAndRestoredLayersContinueExactly)
                 restored = AnimationController(set);
                 for (std::size_t layer = 0; layer < first.layerCount(); ++layer)
                 {
-                    const Result<void> isRestored = restored.layer(layer).restore(first.layer(layer).snapshot());
+                    const Result<void> isRestored =
+                        LayerSnapshot::of(first.layer(layer)).restoreTo(restored.layer(layer));
                     ASSERT_TRUE(isRestored) << isRestored.error().message;
                 }
                 copy = first;
@@ -391,7 +395,7 @@ TEST(LayerSnapshotTest, faultsAreNamedAndTheEdgesAreAccepted)
     source.setParameter(0.25);
     ASSERT_TRUE(source.play(space));
     source.advance(0.1);
-    const LayerSnapshot good = source.layer(0).snapshot();
+    const LayerSnapshot good = LayerSnapshot::of(source.layer(0));
     ASSERT_EQ(good.activeClips.size(), 2u);
     using Change = std::function<void(LayerSnapshot&)>;
     struct Case
@@ -420,8 +424,8 @@ TEST(LayerSnapshotTest, faultsAreNamedAndTheEdgesAreAccepted)
         {"a blend space that cannot be", [](LayerSnapshot& kept) { kept.spaces[0].phase = -0.1; }},
         {"a blend space that cannot be", [=](LayerSnapshot& kept) { kept.spaces[0].parameter.y = nan; }},
         {"a blend space that cannot be", [](LayerSnapshot& kept) { kept.spaces[0].space = nullptr; }},
-        {"a parameter that is not finite", [=](LayerSnapshot& kept) { kept.parameter.y = nan; }},
-        {"a speed that is not finite", [=](LayerSnapshot& kept) { kept.speed = nan; }},
+        {"a parameter that is not finite", [=](LayerSnapshot& kept) { kept.settings.parameter.y = nan; }},
+        {"a speed that is not finite", [=](LayerSnapshot& kept) { kept.settings.speed = nan; }},
         {"a time or speed that is not finite", [=](LayerSnapshot& kept) { kept.activeClips[1].speed = nan; }},
         {"a time or speed that is not finite", [](LayerSnapshot& kept) { kept.activeClips[1].time = HUGE_VAL; }},
         {"a fade that cannot be", [](LayerSnapshot& kept) { kept.weight.to = 1.1; }},
@@ -440,7 +444,7 @@ TEST(LayerSnapshotTest, faultsAreNamedAndTheEdgesAreAccepted)
         AnimationController controller(set);
         LayerSnapshot kept = good;
         cases[i].change(kept);
-        const Result<void> isRestored = controller.layer(0).restore(kept);
+        const Result<void> isRestored = kept.restoreTo(controller.layer(0));
         ASSERT_EQ(static_cast<bool>(isRestored), *cases[i].message == '\0') << cases[i].message;
         if (isRestored) continue;
         EXPECT_NE(isRestored.error().message.find(cases[i].message), std::string::npos) << isRestored.error().message;
@@ -454,7 +458,7 @@ TEST(LayerSnapshotTest, aPoseWithNothingSetIsKeptWithItsShare)
     AnimationController source(set), restored(set);
     source.layer(0).pose();
     ASSERT_EQ(source.layer(0).poseShare(), 1.0f);
-    ASSERT_TRUE(restored.layer(0).restore(source.layer(0).snapshot()));
+    ASSERT_TRUE(LayerSnapshot::of(source.layer(0)).restoreTo(restored.layer(0)));
     EXPECT_EQ(restored.layer(0).poseShare(), 1.0f);
     ASSERT_TRUE(restored.layer(0).pose().setTranslation(1, glm::vec3(1.0f)));
     EXPECT_EQ(restored.instruction().poses.size(), 1u) << "it shows at once";
@@ -656,14 +660,15 @@ TEST(JointMaskTest, masksLiveAsLongAsTheirUsers)
         }
     EXPECT_EQ(set->masks().count(), 100 * maxLayers);
     const AnimationController copy = controllers[7];
-    const LayerSnapshot snapshot = controllers[8].layer(3).snapshot();
+    const LayerSnapshot snapshot = LayerSnapshot::of(controllers[8].layer(3));
     controllers.clear();
     EXPECT_EQ(set->masks().count(), maxLayers);
     for (std::size_t layer = 0; layer < maxLayers; ++layer)
-        EXPECT_EQ(set->masks().weights(copy.layer(layer).mask())[0], static_cast<float>(56 + layer) / 1000.0f);
+        EXPECT_EQ(set->masks().weights(ControllerDetail::maskNumber(copy.layer(layer)))[0],
+                  static_cast<float>(56 + layer) / 1000.0f);
     AnimationController restored(set->withClips(set->clips()).value());
-    ASSERT_TRUE(restored.layer(3).restore(snapshot));
-    EXPECT_EQ(restored.layer(3).snapshot().mask[0], 67.0f / 1000.0f);
+    ASSERT_TRUE(snapshot.restoreTo(restored.layer(3)));
+    EXPECT_EQ(LayerSnapshot::of(restored.layer(3)).mask[0], 67.0f / 1000.0f);
 }
 
 } // namespace

@@ -310,7 +310,7 @@ TEST(BlendSpacePlaybackTest, whatFadesOutMovesOnAfterAOnceClipHasEnded)
         EXPECT_NEAR(playbackOf(controller, 0).time(), before + 0.2, 1e-6) << inSpace;
         EXPECT_NEAR(controller.layer(0).mixer().activeClip(0).share, 0.55, 1e-6) << "the fade goes on, too";
         controller.advance(1.2);
-        EXPECT_FALSE(controller.layer(0).isCrossfading());
+        EXPECT_FALSE(controller.layer(0).mixer().isFading());
     }
 }
 
@@ -374,9 +374,9 @@ TEST(BlendSpacePlaybackTest, inPhaseAClipKeepsItsTimeFromAndToASpace)
     EXPECT_NEAR(controller.time(), walk, 1e-6) << "from the space";
     inPhase.loopMode = LoopMode::Once;
     ASSERT_TRUE(controller.crossfade(space, 0.5, inPhase));
-    EXPECT_EQ(controller.loopMode(), LoopMode::Once);
+    EXPECT_EQ(controller.layer(0).settings().loopMode, LoopMode::Once);
     controller.stop();
-    EXPECT_EQ(controller.layer(0).blendSpace(), space) << "stopped, it is still the layer's space";
+    EXPECT_EQ(controller.layer(0).mixer().currentSpace()->space, space) << "stopped, it is still the layer's space";
 }
 
 // Two layers of one phase: their pace is the mean of their rounds by layer weight, at the speed of the lowest.
@@ -413,13 +413,13 @@ TEST(SharedPhaseTest, thePaceIsTheMeanByWeightAtTheSpeedOfTheLowest)
         ASSERT_TRUE(lower.play("Walk"));
         ASSERT_TRUE(upper.play("Run"));
         controller.advance(0.3);
-        EXPECT_NEAR(lower.phase(), c.lowerPhase, 1e-6);
-        EXPECT_NEAR(upper.phase(), c.upperPhase, 1e-6);
+        EXPECT_NEAR(lower.playback().phase(), c.lowerPhase, 1e-6);
+        EXPECT_NEAR(upper.playback().phase(), c.upperPhase, 1e-6);
         for (AnimationLayer* layer : {&lower, &upper})
             layer->setPhaseShared(false);
-        const double time = lower.time();
+        const double time = lower.playback().time();
         controller.advance(0.1);
-        EXPECT_NEAR(lower.time(), time + 0.1 * c.lowerSpeed, 1e-6) << "alone it has its own pace";
+        EXPECT_NEAR(lower.playback().time(), time + 0.1 * c.lowerSpeed, 1e-6) << "alone it has its own pace";
     }
 }
 
@@ -437,7 +437,7 @@ TEST(SharedPhaseTest, aClipStartsAtThePhaseOfPlayingPartnersAlone)
         controller.advance(0.3);
         if (which == 2) lower.pause();
         ASSERT_TRUE(upper.play("Run"));
-        EXPECT_NEAR(upper.time(), which == 0 ? 0.15 : 0.0, 1e-6) << which;
+        EXPECT_NEAR(upper.playback().time(), which == 0 ? 0.15 : 0.0, 1e-6) << which;
         // What fades out on the lower layer is in step with nobody.
         if (which != 0) continue;
         ASSERT_TRUE(lower.crossfade("Run", 1.0));

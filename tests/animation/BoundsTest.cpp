@@ -3,6 +3,7 @@
 #include <osgGpuAnimation/animation/bounds/ClipBounds.h>
 #include <osgGpuAnimation/animation/bounds/ClipTravel.h>
 #include <osgGpuAnimation/animation/bounds/TransformBound.h>
+#include <osgGpuAnimation/animation/Channel.h>
 #include <osgGpuAnimation/animation/Pose.h>
 
 #include "support/ClipSets.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/Channel.h>
 #include <osgGpuAnimation/animation/keyframes/CompactTracks.h>
 #include <osgGpuAnimation/animation/keyframes/PackedKeyframes.h>
 #include <osgGpuAnimation/animation/RootMotion.h>
@@ -186,7 +187,7 @@ TEST(CompactTracksTest, numbersReachBothEndsAndWithoutBitsAreTheMiddle)
 // Two translations of the finest numbers take a texel.
 TEST(CompactTracksTest, recordsHaveALargestSize)
 {
-    const std::size_t largest = 2 * CompactTracks::mostTexels;
+    const std::size_t largest = 2 * CompactTracks::maxTexels;
     for (const std::size_t joints : {std::size_t(1), std::size_t(700), largest, largest + 1})
     {
         std::vector<JointTransform> data(2 * joints);
@@ -197,7 +198,7 @@ TEST(CompactTracksTest, recordsHaveALargestSize)
             data[joints + joint].translation.x = 1.0f;
             CompactTracks::Part& translation = tracks.tracks[joint].translation;
             translation.firstBit = 0;
-            translation.setRange(glm::vec3(0.0f), glm::vec3(1.0f), glm::uvec3(CompactTracks::mostBits));
+            translation.setRange(glm::vec3(0.0f), glm::vec3(1.0f), glm::uvec3(CompactTracks::maxBits));
         }
         const bool isPossible = joints <= largest;
         EXPECT_EQ(tracks.pack(data, joints), isPossible) << joints;
@@ -241,7 +242,7 @@ TEST(CompactClipsTest, tracksThatDoNotFitAreRefused)
         {"numbers across texels", [](CompactTracks& tracks) { tracks.tracks[0].translation.firstBit = 127; }},
         {"no place", [](CompactTracks& tracks) { tracks.tracks[1].scale.firstBit = -2; }},
         {"a number of too many bits",
-         [](CompactTracks& tracks) { tracks.tracks[0].translation.bits.y = CompactTracks::mostBits + 1; }},
+         [](CompactTracks& tracks) { tracks.tracks[0].translation.bits.y = CompactTracks::maxBits + 1; }},
         {"one texel more", [](CompactTracks& tracks) { tracks.records.emplace_back(0u); }},
         {"one texel less", [](CompactTracks& tracks) { tracks.records.pop_back(); }},
         {"a joint less", [](CompactTracks& tracks) { tracks.tracks.pop_back(); }},
@@ -252,7 +253,7 @@ TEST(CompactClipsTest, tracksThatDoNotFitAreRefused)
         {"a record that is too large",
          [&](CompactTracks& tracks)
          {
-             tracks.recordSize = CompactTracks::mostTexels + 1;
+             tracks.recordSize = CompactTracks::maxTexels + 1;
              tracks.records.resize(tracks.recordSize * clip.keyframeCount());
          }},
     };

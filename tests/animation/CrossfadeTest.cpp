@@ -119,7 +119,7 @@ TEST(CrossfadeTest, goesFromOnePoseToTheOtherByItsCurve)
         ASSERT_TRUE(controller.play("Walk"));
         ASSERT_TRUE(controller.crossfade("Run", 1.0, {curve, Sync::Start, {}}));
         EXPECT_EQ(controller.clip(), set->findClip("Run"));
-        EXPECT_TRUE(controller.layer(0).isCrossfading());
+        EXPECT_TRUE(controller.layer(0).mixer().isFading());
         EXPECT_EQ(controller.instruction().sampleCount, 1u) << "still all Walk";
         controller.advance(0.25);
         const PoseInstruction& instruction = controller.instruction();
@@ -132,7 +132,7 @@ TEST(CrossfadeTest, goesFromOnePoseToTheOtherByItsCurve)
         controller.advance(0.25);
         EXPECT_EQ(controller.instruction().sampleCount, 1u);
         EXPECT_FLOAT_EQ(controller.instruction().samples[0].weight, 1.0f);
-        EXPECT_FALSE(controller.layer(0).isCrossfading());
+        EXPECT_FALSE(controller.layer(0).mixer().isFading());
         EXPECT_DOUBLE_EQ(controller.time(), std::fmod(1.0, controller.duration()));
     }
 }
@@ -150,9 +150,9 @@ TEST(CrossfadeTest, inPhaseBothRunAtOnePaceUntilItIsOver)
             controller.setLoopMode(from);
             ASSERT_TRUE(controller.play("Walk"));
             controller.advance(start);
-            const double phase = controller.phase();
+            const double phase = controller.layer(0).playback().phase();
             ASSERT_TRUE(controller.crossfade("Run", 0.5, {FadeCurve::Linear, Sync::Phase, to}));
-            EXPECT_NEAR(controller.phase(), phase, 1e-6);
+            EXPECT_NEAR(controller.layer(0).playback().phase(), phase, 1e-6);
             for (int i = 0; i < 30; ++i)
             {
                 controller.advance(frameSeconds);

@@ -62,7 +62,7 @@ TEST(GroundSpeedTest, aClipIsMeasuredByItsFeet)
     ASSERT_FALSE(none);
     EXPECT_EQ(none.error().message, "a ground speed of nan: it must be finite");
     ASSERT_TRUE(controller.layer(0).setGroundSpeed(-1.6));
-    EXPECT_NEAR(controller.speed(), -0.5, 0.005);
+    EXPECT_NEAR(controller.layer(0).settings().speed, -0.5, 0.005);
     AnimationController standing(
         makeGaitSet()->withClips({ClipBuilder(makeGaitSet()->skeleton(), {}).build("Stand")}).value());
     ASSERT_TRUE(standing.play("Stand"));
@@ -71,7 +71,7 @@ TEST(GroundSpeedTest, aClipIsMeasuredByItsFeet)
     EXPECT_EQ(refused.error().message,
               "a ground speed for clip \"Stand\": its feet stand, so no speed fits; setSpeed() sets one");
     EXPECT_TRUE(standing.layer(0).setGroundSpeed(0.0));
-    EXPECT_EQ(standing.speed(), 1.0);
+    EXPECT_EQ(standing.layer(0).settings().speed, 1.0);
 }
 
 // The legs of a rest pose are straight, so that angles are not quite in proportion to places.

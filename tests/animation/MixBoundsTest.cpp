@@ -4,6 +4,8 @@
 #include <osgGpuAnimation/animation/bounds/ClipBounds.h>
 #include <osgGpuAnimation/animation/bounds/JointRange.h>
 #include <osgGpuAnimation/animation/bounds/MixBounds.h>
+#include <osgGpuAnimation/animation/Channel.h>
+#include <osgGpuAnimation/animation/detail/ControllerDetail.h>
 #include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/math/Box.h>
@@ -113,7 +115,7 @@ TEST(MixBoundsTest, holdWhateverLayersAndCrossfadesShow)
             for (int frame = 0; frame < 20; ++frame)
             {
                 controller.advance(number(random, 0.0, 0.2));
-                findPlayedClips(controller, played);
+                ControllerDetail::findPlayedClips(controller, played);
                 Box seen;
                 ASSERT_LE(outside(bounds.box(played), controller, boxes, seen), 0.0)
                     << "seed " << seed << ", character " << character << ", stack " << stack << ", frame " << frame;
@@ -149,7 +151,7 @@ void expectBoundsHoldTenFrames(AnimationController& controller)
     std::vector<PlayedClip> played;
     for (int frame = 0; frame < 10; ++frame, controller.advance(0.1))
     {
-        findPlayedClips(controller, played);
+        ControllerDetail::findPlayedClips(controller, played);
         Box seen;
         EXPECT_LE(outside(bounds.box(played), controller, boxes, seen), 0.0) << frame;
     }
@@ -183,7 +185,7 @@ TEST(MixBoundsTest, clipsPlayedAreThoseThatShow)
     std::vector<PlayedClip> played;
     const auto clips = [&]
     {
-        findPlayedClips(controller, played);
+        ControllerDetail::findPlayedClips(controller, played);
         std::vector<int> numbers;
         for (const PlayedClip& clip : played)
             numbers.push_back(clip.clip);
@@ -217,7 +219,7 @@ TEST(MixBoundsTest, whateverCanShowIsPlayed)
     std::vector<PlayedClip> played;
     const auto countOf = [&](const AnimationController& controller, int clip)
     {
-        findPlayedClips(controller, played);
+        ControllerDetail::findPlayedClips(controller, played);
         return std::count_if(played.begin(), played.end(),
                              [&](const PlayedClip& one) { return one.clip == clip && !one.pose; });
     };
@@ -273,10 +275,10 @@ TEST(MixBoundsTest, theEntrysBoxIsThatOfTheWeightsThatCanOccur)
     boxes.reaches[entry] = 10.0f;
     const MixBounds bounds(*set, boxes);
     using Part = PlayedClip::Part;
-    const auto pose = [](double largestWeight, Part part)
+    const auto pose = [](double maxWeight, Part part)
     {
         PoseExtent extent;
-        extent.largestWeight = largestWeight;
+        extent.maxWeight = maxWeight;
         return PlayedClip{-1, part, std::make_shared<const PoseExtent>(extent)};
     };
     const PlayedClip rest{-1, Part::Mixed}, added{-1, Part::AddedToRest};
@@ -405,7 +407,7 @@ TEST(JointRangeTest, holdsASplineThatOvershootsJustBeforeOrAfterAKey)
             const glm::dvec3 grown = glm::dvec3(tracks[0].scale) - range.scale;
             const double cosine = std::abs(glm::dot(glm::dvec4(tracks[0].rotation), range.rotation));
             EXPECT_LE(glm::length(moved), range.shift + 1e-6) << time;
-            EXPECT_LE(largestComponent(glm::abs(grown)), range.stretch + 1e-6) << time;
+            EXPECT_LE(maxComponent(glm::abs(grown)), range.stretch + 1e-6) << time;
             EXPECT_LE(std::acos(std::min(cosine, 1.0)), range.turn + 1e-6) << time;
             highest = std::max(highest, static_cast<double>(tracks[0].translation.y));
         }

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/Channel.h>
+#include <osgGpuAnimation/authoring/WithClipsOf.h>
 #include <osgGpuAnimation/authoring/WithRootMotion.h>
 
 #include "support/ClipSets.h"
 #include "support/RandomSet.h"
 #include <osgGpuAnimation/animation/Pose.h>
-#include <osgGpuAnimation/animation/retarget/JointNames.h>
-#include <osgGpuAnimation/animation/retarget/RigMatch.h>
+#include <osgGpuAnimation/authoring/retarget/JointNames.h>
+#include <osgGpuAnimation/authoring/retarget/RigMatch.h>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -44,7 +46,7 @@ SetPointer makeSet(const std::vector<Joint>& joints, std::vector<std::vector<Cha
 
 RetargetedSet retargeted(const SetPointer& set, const SetPointer& clips, const RetargetOptions& options = {})
 {
-    const Result<RetargetedSet> result = set->withClipsOf(*clips, options);
+    const Result<RetargetedSet> result = withClipsOf(*set, *clips, options);
     EXPECT_TRUE(result) << result.error().message;
     return result ? result.value() : RetargetedSet{set, {}, {}};
 }
@@ -61,7 +63,7 @@ struct PosedJoints
         Pose::mix(*set, instructionAt(*set, clip, time), tracks);
         std::vector<AffineMatrix> toModel(set->skeleton().jointCount());
         Pose::jointToModel(*set, tracks, AffineMatrix(), toModel);
-        const RestPlaces rest(set->skeleton());
+        const JointPlaces rest(set->skeleton());
         std::vector<glm::dquat> rotations;
         for (std::size_t joint = 0; joint < toModel.size(); ++joint)
         {
@@ -419,7 +421,7 @@ TEST(RetargetTest, rootMotionStaysOutOfClipsOfTheSameRigOnly)
     const RetargetedSet same = retargeted(makeSet(Leg().joints(), {}), still);
     ASSERT_TRUE(same.set->clips()[0].rootMotion());
     EXPECT_EQ(same.set->clips()[0].rootMotionAt(1.0).translation, glm::dvec3(0, 0, 4));
-    const Result<RetargetedSet> other = makeSet(Leg{1.0f, 2.0f, 2.0f}.joints(), {})->withClipsOf(*still);
+    const Result<RetargetedSet> other = withClipsOf(*makeSet(Leg{1.0f, 2.0f, 2.0f}.joints(), {}), *still);
     ASSERT_FALSE(other);
     EXPECT_NE(other.error().message.find("hips"), std::string::npos) << other.error().message;
 }
@@ -448,7 +450,7 @@ TEST(RetargetTest, faultsAreErrorsThatNameThem)
     for (const Case& one : cases)
     {
         const Result<RetargetedSet> result =
-            set->withClipsOf(*makeSet(one.joints, std::vector<std::vector<Channel>>(one.clips)), one.options);
+            withClipsOf(*set, *makeSet(one.joints, std::vector<std::vector<Channel>>(one.clips)), one.options);
         ASSERT_FALSE(result) << one.name;
         EXPECT_NE(result.error().message.find(one.message), std::string::npos) << result.error().message;
     }

@@ -56,8 +56,8 @@ TEST_F(StateMachineTest, takesTransitionsWhoseConditionsHold)
     EXPECT_TRUE(step(0.1));
     EXPECT_EQ(machine.state(), "go");
     EXPECT_EQ(controller.clip(), 1);
-    EXPECT_EQ(controller.speed(), 1.5);
-    EXPECT_TRUE(controller.layer(0).isCrossfading());
+    EXPECT_EQ(controller.layer(0).settings().speed, 1.5);
+    EXPECT_TRUE(controller.layer(0).mixer().isFading());
     EXPECT_EQ(controller.layer(0).mixer().activeClip(0).playback.speed(), 1.0) << "what fades out keeps its own";
 
     EXPECT_TRUE(machine.set("speed", 0.0));
@@ -71,7 +71,7 @@ TEST_F(StateMachineTest, takesTransitionsWhoseConditionsHold)
     EXPECT_FALSE(step(2.0)) << "the trigger is used up, the clip ends in this step";
     EXPECT_TRUE(step(0.1));
     EXPECT_EQ(machine.state(), "stand");
-    EXPECT_EQ(controller.loopMode(), LoopMode::Loop);
+    EXPECT_EQ(controller.layer(0).settings().loopMode, LoopMode::Loop);
 }
 
 TEST_F(StateMachineTest, aTransitionUsesUpItsOwnTriggersAlone)
@@ -147,7 +147,7 @@ TEST_F(StateMachineTest, refusesWhatItDoesNotKnow)
     machine.update(controller, -HUGE_VAL);
     EXPECT_EQ(machine.secondsInState(), 0.0);
     EXPECT_EQ(controller.clip(), -1) << "it drives layer 2 alone";
-    EXPECT_EQ(controller.layer(2).clip(), 0);
+    EXPECT_EQ(controller.layer(2).playback().clip(), 0);
 }
 
 TEST_F(StateMachineTest, aControllerOfAnotherSetStaysAsItIs)
@@ -272,14 +272,14 @@ TEST_F(StateMachineTest, aBlendSpaceGetsBothParametersAtOnceAndTheCurveIsThatOfT
     machine.set("y", 0.5);
     machine.set("angle", 0.75);
     ASSERT_TRUE(machine.update(controller, 0.1));
-    EXPECT_EQ(controller.layer(0).parameter(), glm::dvec2(0.25, 0.5)) << "from the first frame on";
-    EXPECT_TRUE(controller.layer(0).isPhaseShared());
+    EXPECT_EQ(controller.layer(0).settings().parameter, glm::dvec2(0.25, 0.5)) << "from the first frame on";
+    EXPECT_TRUE(controller.layer(0).settings().isPhaseShared);
     machine.set("y", 0.25);
     EXPECT_FALSE(machine.update(controller, 0.1));
-    EXPECT_EQ(controller.layer(0).parameter(), glm::dvec2(0.25, 0.25));
+    EXPECT_EQ(controller.layer(0).settings().parameter, glm::dvec2(0.25, 0.25));
     machine.fire("aim");
     ASSERT_TRUE(machine.update(controller, 0.1));
-    EXPECT_EQ(controller.layer(0).parameter(), glm::dvec2(0.75, 0.0)) << "of the new state, at once";
+    EXPECT_EQ(controller.layer(0).settings().parameter, glm::dvec2(0.75, 0.0)) << "of the new state, at once";
     controller.advance(0.25);
     EXPECT_NEAR(controller.layer(0).mixer().fade().value(), 0.15625, 1e-12) << "3x² - 2x³";
     EXPECT_FALSE(machine.update(controller, -5.0));

@@ -113,7 +113,7 @@ TEST_F(AssimpPluginTest, osgDbReadsCharactersOfOtherFormats)
         AnimatedCharacter* const character = findCharacter(*node);
         ASSERT_TRUE(character);
         EXPECT_TRUE(character->getController().isPlaying());
-        EXPECT_EQ(character->getController().speed(), 2.0);
+        EXPECT_EQ(character->getController().layer(0).settings().speed, 2.0);
     }
     EXPECT_NE(log->text.find("arm.md5mesh: picture \"arm_d.tga\": is neither in the file nor beside it"),
               std::string::npos)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/animation/Skin.h>
 #include <string>
 
 namespace osgGpuAnimation

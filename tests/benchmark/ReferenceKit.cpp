@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "ReferenceKit.h"
+#include <osgGpuAnimation/animation/Channel.h>
 
 #include <osgGpuAnimation/looks/shading/ShaderPermutations.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>

@@ -2,6 +2,7 @@
 #include "support/RandomSet.h"
 
 #include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/animation/JointPose.h>
 #include <osgGpuAnimation/gpu/PoseBatch.h>
 
 #include <layout.glsl>

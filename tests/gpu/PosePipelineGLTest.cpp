@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/animation/JointPose.h>
 #include <osgGpuAnimation/animation/keyframes/PackedKeyframes.h>
 #include <osgGpuAnimation/gpu/buffers/InstanceTransforms.h>
 #include <osgGpuAnimation/gpu/passes/FeedbackTimer.h>

@@ -255,7 +255,7 @@ TEST(AnimatedCrowdTest, compactPlaybackKeepsTheControllersTime)
             EXPECT_EQ(CrowdDetail::instances(*crowd).controllerCount(), 0u);
             EXPECT_NEAR(crowd->getController(instance)->time(), controller.time(), 1e-9);
             EXPECT_EQ(crowd->getController(instance)->state(), controller.state());
-            EXPECT_EQ(crowd->getController(instance)->speed(), controller.speed());
+            EXPECT_EQ(crowd->getController(instance)->layer(0).settings().speed, controller.layer(0).settings().speed);
         }
 }
 

@@ -109,7 +109,7 @@ TEST_F(CharacterKeysTest, nextAndPreviousClipFade)
     press('n');
     EXPECT_EQ(controller.clip(), 1);
     EXPECT_EQ(clone->getController().clip(), 1);
-    EXPECT_TRUE(controller.layer(0).isCrossfading());
+    EXPECT_TRUE(controller.layer(0).mixer().isFading());
     press('n');
     EXPECT_EQ(controller.clip(), 0);
     press('N');
@@ -128,13 +128,13 @@ TEST_F(CharacterKeysTest, pauseHoldsAllLayersAndTheNextClipStaysPaused)
     EXPECT_EQ(controller.layer(0).state(), PlayState::Paused);
     EXPECT_EQ(controller.layer(1).state(), PlayState::Paused);
     press('k');
-    EXPECT_TRUE(controller.layer(0).isPlaying());
-    EXPECT_TRUE(controller.layer(1).isPlaying());
+    EXPECT_TRUE(controller.layer(0).state() == PlayState::Playing);
+    EXPECT_TRUE(controller.layer(1).state() == PlayState::Playing);
     press('k');
     press('n');
     EXPECT_EQ(controller.clip(), 1);
     EXPECT_EQ(controller.state(), PlayState::Paused);
-    EXPECT_FALSE(controller.layer(0).isCrossfading()) << "a fade would stand still too";
+    EXPECT_FALSE(controller.layer(0).mixer().isFading()) << "a fade would stand still too";
     press('N');
     EXPECT_EQ(controller.clip(), 0);
     EXPECT_EQ(controller.state(), PlayState::Paused);
@@ -177,13 +177,13 @@ TEST_F(CharacterKeysTest, slowerFasterAndTheOtherWay)
     for (const auto& [key, speed] : speeds)
     {
         press(key);
-        EXPECT_DOUBLE_EQ(controller.speed(), speed) << key;
+        EXPECT_DOUBLE_EQ(controller.layer(0).settings().speed, speed) << key;
     }
     for (const auto& [key, limit] : {std::pair('-', -1.0 / 64.0), std::pair('+', -64.0)})
     {
         for (int i = 0; i < 100; ++i)
             press(key);
-        EXPECT_DOUBLE_EQ(controller.speed(), limit);
+        EXPECT_DOUBLE_EQ(controller.layer(0).settings().speed, limit);
     }
     controller.setLoopMode(LoopMode::Once);
     controller.advance(100.0);

@@ -115,10 +115,10 @@ public:
     osg::Vec3d ball(const std::string& side) const { return osg::Vec3d(0, -0.02, 0) * joint("toes." + side); }
     osg::Vec3d heel(const std::string& side) const { return osg::Vec3d(0, -0.08, 0) * joint("foot." + side); }
     double height() const { return toWorld().getTrans().z(); }
-    bool isConstrained() const { return walker->getController().isConstrained(); }
+    bool isConstrained() const { return !walker->getController().instruction().targets.empty(); }
     double phase(const std::string& side) const
     {
-        return std::fmod(walker->getController().phase() + (side == "R" ? 0.5 : 0.0), 1.0);
+        return std::fmod(walker->getController().layer(0).playback().phase() + (side == "R" ? 0.5 : 0.0), 1.0);
     }
 
     osg::ref_ptr<osg::Group> scene = new osg::Group;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/detail/ControllerDetail.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
 
@@ -273,17 +274,17 @@ TEST(JointAttachmentTest, aNewSetChangesNothingElse)
     controller.layer(1).setLoopMode(LoopMode::Once);
     controller.advance(100.0);
     ASSERT_EQ(controller.layer(1).state(), PlayState::Ended);
-    const RootMotion motion = controller.rootMotion();
+    const RootMotion motion = AnimationController(controller).takeRootMotion();
     ASSERT_FALSE(motion.isNone());
 
     ASSERT_TRUE(character->setAnimationSet(moving->withClips(moving->clips()).value()));
     EXPECT_EQ(controller.layer(0).weight(), 0.5f);
-    EXPECT_EQ(controller.layer(0).blendPriority(), 3);
-    EXPECT_NE(controller.layer(0).mask(), 0u);
+    EXPECT_EQ(controller.layer(0).settings().blendPriority, 3);
+    EXPECT_NE(ControllerDetail::maskNumber(controller.layer(0)), 0u);
     ASSERT_EQ(controller.layerCount(), 2u);
     EXPECT_EQ(controller.layer(1).state(), PlayState::Ended);
-    EXPECT_EQ(controller.layer(1).clip(), 1);
-    EXPECT_EQ(controller.rootMotion().translation, motion.translation);
+    EXPECT_EQ(controller.layer(1).playback().clip(), 1);
+    EXPECT_EQ(AnimationController(controller).takeRootMotion().translation, motion.translation);
     int finished = 0;
     controller.setEventCallback([&](const AnimationEvent& event)
                                 { finished += event.type == AnimationEvent::Type::Finished ? 1 : 0; });
@@ -294,7 +295,7 @@ TEST(JointAttachmentTest, aNewSetChangesNothingElse)
     ASSERT_TRUE(character->setAnimationSet(moving->withClips({moving->clips()[0]}).value()));
     EXPECT_TRUE(controller.isPlaying());
     EXPECT_EQ(controller.layer(1).state(), PlayState::Stopped) << "its clip is not there any more";
-    EXPECT_EQ(controller.layer(1).speed(), 2.0);
+    EXPECT_EQ(controller.layer(1).settings().speed, 2.0);
     for (const auto& other : {AnimationSet::create({Skeleton::create({}).value(), {}, {}, {}, {}}).value(),
                               std::shared_ptr<const AnimationSet>()})
         EXPECT_FALSE(character->setAnimationSet(other)) << "of another palette";

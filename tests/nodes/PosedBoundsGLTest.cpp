@@ -3,6 +3,7 @@
 #include "support/ViewerGLTest.h"
 
 #include <osg/MatrixTransform>
+#include <osgGpuAnimation/animation/JointPose.h>
 #include <osgUtil/LineSegmentIntersector>
 
 // Poses far out of the bind pose are neither culled nor clipped by computed near and far planes.

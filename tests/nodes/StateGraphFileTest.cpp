@@ -43,7 +43,7 @@ TEST(StateGraphFileTest, readsAllThatAGraphHas)
     EXPECT_EQ(graph.transitions()[0].conditions.size(), 2u);
     EXPECT_EQ(graph.transitions()[0].seconds, 0.3);
     EXPECT_EQ(graph.transitions()[0].options.sync, Sync::Phase);
-    EXPECT_EQ(graph.transitions()[1].from, -1);
+    EXPECT_EQ(graph.transitions()[1].from, std::nullopt);
     EXPECT_EQ(graph.transitions()[1].options.curve, FadeCurve::Smooth);
     EXPECT_EQ(graph.transitions()[2].from, 2);
     EXPECT_EQ(graph.transitions()[2].to, 0);
@@ -92,16 +92,16 @@ TEST(StateGraphFileTest, aStateMayPlayABlendSpace)
         return machine.state();
     };
     EXPECT_EQ(step(0.0), "stand");
-    EXPECT_TRUE(controller.layer(0).isPhaseShared());
-    EXPECT_FALSE(controller.layer(0).blendSpace());
+    EXPECT_TRUE(controller.layer(0).settings().isPhaseShared);
+    EXPECT_FALSE(controller.layer(0).mixer().currentSpace());
     EXPECT_EQ(step(2.75), "move");
     ASSERT_EQ(controller.instruction().sampleCount, 2u);
     EXPECT_FLOAT_EQ(controller.instruction().samples[0].weight, 0.5f) << "the parameter passes to the space";
     EXPECT_TRUE(machine.fire("strafe"));
     EXPECT_TRUE(machine.set("side", 0.5));
     EXPECT_EQ(step(0.75), "strafe");
-    EXPECT_EQ(controller.layer(0).parameter(), glm::dvec2(0.75, 0.5));
-    EXPECT_EQ(controller.speed(), 0.5);
+    EXPECT_EQ(controller.layer(0).settings().parameter, glm::dvec2(0.75, 0.5));
+    EXPECT_EQ(controller.layer(0).settings().speed, 0.5);
 }
 
 TEST(StateGraphFileTest, theSpeedMayFollowTheGround)
@@ -120,14 +120,14 @@ TEST(StateGraphFileTest, theSpeedMayFollowTheGround)
     StateMachine machine(graph.value());
     EXPECT_TRUE(machine.set("speed", 0.6));
     machine.update(controller, 0.1);
-    EXPECT_NEAR(controller.speed(), 0.5, 0.005);
+    EXPECT_NEAR(controller.layer(0).settings().speed, 0.5, 0.005);
     EXPECT_TRUE(machine.set("speed", 3.2));
     machine.update(controller, 0.1);
     EXPECT_EQ(machine.state(), "move");
-    EXPECT_NEAR(controller.speed(), 1.0, 0.01) << "a run at its own speed";
+    EXPECT_NEAR(controller.layer(0).settings().speed, 1.0, 0.01) << "a run at its own speed";
     EXPECT_TRUE(machine.set("speed", 6.4));
     machine.update(controller, 0.1);
-    EXPECT_NEAR(controller.speed(), 2.0, 0.02) << "beyond the fastest clip";
+    EXPECT_NEAR(controller.layer(0).settings().speed, 2.0, 0.02) << "beyond the fastest clip";
 }
 
 TEST(StateGraphFileTest, faultsAreNamed)

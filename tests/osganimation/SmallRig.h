@@ -13,6 +13,7 @@
 #include <osgAnimation/StackedScaleElement>
 #include <osgAnimation/StackedTranslateElement>
 #include <osgAnimation/UpdateBone>
+#include <osgGpuAnimation/animation/Channel.h>
 
 #include <string>
 

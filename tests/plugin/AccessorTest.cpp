@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/data/Accessor.h"
 
-#include "gltf/document/ValidateAccessors.h"
+#include "gltf/data/Validation.h"
 #include "plugin/ModelBuilder.h"
 
 #include <gtest/gtest.h>

@@ -108,7 +108,7 @@ TEST(ClipFilesTest, clipsAreChosenByTheFilesNumber)
         EXPECT_EQ(model.animationOfClip, std::vector<int>({1, 2, 3, 4}));
         const AnimationController& controller = model.character->getController();
         EXPECT_EQ(controller.set().clips()[static_cast<std::size_t>(controller.clip())].name(), expected) << wish;
-        EXPECT_EQ(controller.speed(), -2.0);
+        EXPECT_EQ(controller.layer(0).settings().speed, -2.0);
     }
 }
 

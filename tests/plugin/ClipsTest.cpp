@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/scene/Clips.h"
+#include "gltf/import/Clips.h"
 #include "plugin/ImportedFile.h"
 #include "plugin/ModelBuilder.h"
 

@@ -10,8 +10,8 @@
 #include <thread>
 
 // Several threads read files at once through osgDB, as DatabasePagers and loading screens do. The test checks that
-// loads are right and that osgDB's cache returns copies of a scene (plugin/cache/SeparateLoads.h). ThreadSanitizer
-// checks the data that loads share in the process: mesh numbers, programs and morph textures.
+// loads are right and that osgDB's cache returns copies of a scene (plugin/serializers/RegistryHooks.h).
+// ThreadSanitizer checks the data that loads share in the process: mesh numbers, programs and morph textures.
 
 namespace osgGpuAnimation
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/write/ClipKeys.h"
+#include "gltf/export/ClipKeys.h"
 #include "plugin/ExportedDocument.h"
 #include "plugin/ImportedFile.h"
 #include "plugin/StoredScene.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/data/Picture.h"
-#include "gltf/write/PictureWriter.h"
+#include "gltf/export/PictureWriter.h"
 #include "plugin/ExportedDocument.h"
 
 #include <osgGpuAnimation/looks/PbrMaterial.h>

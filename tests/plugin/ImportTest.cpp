@@ -86,8 +86,8 @@ TEST(ImportTest, whatMovesIsTheCharactersAndTheRestIsPlain)
     EXPECT_EQ(model.nodeNames, (std::vector<std::string>{"root", "arm", "sword", "stone"}));
     EXPECT_EQ(model.nodeParents, (std::vector<int>{-1, 0, 1, 0}));
     const AnimationController& controller = model.character->getController();
-    EXPECT_EQ(controller.state(), AnimationController::State::Playing);
-    EXPECT_EQ(controller.loopMode(), AnimationController::LoopMode::Loop);
+    EXPECT_EQ(controller.state(), PlayState::Playing);
+    EXPECT_EQ(controller.layer(0).settings().loopMode, LoopMode::Loop);
     EXPECT_EQ(controller.clip(), 0);
 
     ModelBuilder still;

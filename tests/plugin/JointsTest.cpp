@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/scene/Joints.h"
-#include "gltf/scene/NodeTransform.h"
+#include "gltf/import/Joints.h"
+#include "gltf/import/NodeTransform.h"
 #include "plugin/ModelBuilder.h"
 
 #include <glm/ext/matrix_transform.hpp>

@@ -75,7 +75,7 @@ TEST(JsonReaderTest, refusesFaultyTexts)
         {whole.substr(0, whole.find("AAA") + 2000), "JSON syntax"},
         {whole.substr(0, whole.find("\"name") + 3), "JSON syntax"},
         {"}]" + whole + "]", "JSON syntax"},
-        {whole + "]", "(counted without the data URIs)"},
+        {whole + "]", "JSON syntax"},
     };
     for (const auto& [text, message] : texts)
         EXPECT_NE(rewritten(text).find(message), std::string::npos) << text << " -> " << rewritten(text);
@@ -117,65 +117,6 @@ TEST(JsonReaderTest, theLastOfTwoEqualKeysCountsWithAWarning)
     EXPECT_EQ(writeJson(tree.root()), R"({"x":[{"a":{},"mesh":3}]})");
     ASSERT_FALSE(messages.warnings.empty());
     EXPECT_EQ(messages.warnings[0], "x[0].mesh: the key appears twice; the last counts");
-}
-
-TEST(JsonTextTest, longDataUrisOfBuffersAndImagesStayWhereTheyAre)
-{
-    for (const char* list : {"buffers", "images"})
-    {
-        const std::string whole = withUri(longUri, list);
-        JsonText text(whole);
-        EXPECT_EQ(text.text(), withUri("", list));
-        EXPECT_EQ(text.dataBytes(), longUri.size());
-        EXPECT_LT(text.otherBytes(), 50u);
-        EXPECT_FALSE(text.dataAt(5)); // a":, b, list, uri, x, uri
-        ASSERT_TRUE(text.dataAt(6));
-
-        Messages messages;
-        JsonTree tree = read(whole, messages).value();
-        JsonValue::Iterator element = tree.root()[list].begin();
-        EXPECT_EQ((*element)["uri"].text(), "x");
-        ++element;
-        EXPECT_EQ((*element)["uri"].text(), longUri);
-        EXPECT_EQ((*element)["uri"].text().data(), whole.data() + whole.find("data:"));
-        EXPECT_EQ((*element)["name"].text(), "last");
-    }
-}
-
-TEST(JsonTextTest, valuesAreCountedOutsideStrings)
-{
-    const std::pair<const char*, std::size_t> texts[] = {
-        {"{}", 2}, {"7", 1}, {R"({"a,[{\"":[1,2,{"b":"{,"}]})", 6}, {"[1,2", 3}, {"", 1}};
-    for (const auto& [text, values] : texts)
-        EXPECT_EQ(JsonText(text).mostValues(), values) << text;
-    EXPECT_EQ(JsonText("{\"a\":\"" + longUri).otherBytes(), 1 + longUri.size());
-    EXPECT_EQ(JsonText("\"\\").otherBytes(), 1u);
-    EXPECT_EQ(JsonText("\"").otherBytes(), 0u);
-}
-
-TEST(JsonTextTest, otherStringsAreTheParsers)
-{
-    const std::string texts[] = {
-        withUri(longUri, "nodes"),                                  // another list
-        withUri("data:;base64,AAAA"),                               // short
-        withUri("data:;base64,\\/" + std::string(3000, 'A')),       // with an escape
-        withUri("data:,\xc3\xbc" + std::string(3000, 'A')),         // not ASCII
-        withUri(std::string(3000, 'A')),                            // a path
-        R"({"buffers":{"uri":")" + longUri + R"("}})",              // no element
-        R"({"buffers":[{"name":")" + longUri + R"("}]})",           // no URI
-        R"({"buffers":[{"uri":[")" + longUri + R"("]}]})",          // deeper
-        R"({"buffers":[{"uri":{")" + longUri + R"(":"x"}}]})",      // a key
-        R"({"extras":{"buffers":[{"uri":")" + longUri + R"("}]}})", // elsewhere
-    };
-    Messages messages;
-    for (const std::string& whole : texts)
-    {
-        JsonText text(whole);
-        EXPECT_EQ(text.text().data(), whole.data()) << whole.substr(0, 60);
-        EXPECT_EQ(text.dataBytes(), 0u);
-        EXPECT_GT(text.otherBytes(), whole.size() > 3000 ? 3000u : 40u) << whole.substr(0, 60);
-        EXPECT_TRUE(read(whole, messages)) << whole.substr(0, 60);
-    }
 }
 
 } // namespace osgGpuAnimation::gltf

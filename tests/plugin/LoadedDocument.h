@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "gltf/document/LoadDocument.h"
+#include "gltf/data/LoadDocument.h"
 #include "plugin/ModelBuilder.h"
 
 #include <nlohmann/json.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/data/MaterialMaps.h"
-#include "gltf/scene/Materials.h"
+#include "gltf/import/Materials.h"
 #include "plugin/EncodedPicture.h"
 #include "plugin/ImportedFile.h"
 #include "support/ViewerGLTest.h"
@@ -226,7 +226,7 @@ TEST_F(MaterialsTest, aFileHasALimitedNumberOfSetsOfMaps)
         sets.insert(definesOf(*made));
         EXPECT_TRUE(made->getTextureAttribute(0, osg::StateAttribute::TEXTURE));
     }
-    EXPECT_EQ(sets.size(), Materials::mostSets);
+    EXPECT_EQ(sets.size(), Materials::maxSets);
     ASSERT_EQ(messages.warnings.size(), 1u);
     EXPECT_EQ(messages.warnings[0], "materials: they have more than 64 different sets of maps and extensions; of the "
                                     "others, the base colour map alone is shown");

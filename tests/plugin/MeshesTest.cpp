@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/scene/Meshes.h"
-#include "gltf/scene/Influences.h"
-#include "gltf/scene/TriangleMesh.h"
+#include "gltf/import/Meshes.h"
+#include "gltf/import/Influences.h"
+#include "gltf/import/TriangleMesh.h"
 #include "plugin/ImportedFile.h"
 #include "plugin/PackedDocument.h"
+#include <osgGpuAnimation/animation/Skin.h>
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "plugin/ModelBuilder.h"
+#include <osgGpuAnimation/animation/Skin.h>
 
 #include <nlohmann/json.hpp>
 

@@ -15,7 +15,7 @@ ModelVertices::ModelVertices(const ImportedModel& model, int clip, double time,
     AnimationController controller(model.set);
     if (clip >= 0)
     {
-        controller.setLoopMode(AnimationController::LoopMode::Once); // a clip does not wrap at its end
+        controller.setLoopMode(LoopMode::Once); // a clip does not wrap at its end
         (void)controller.play(static_cast<std::size_t>(clip));
         controller.pause();
         controller.seek(time);

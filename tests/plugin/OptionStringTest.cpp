@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/ImportOptions.h"
+#include "gltf/file/ImportOptions.h"
 
 #include <gtest/gtest.h>
 

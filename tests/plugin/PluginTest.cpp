@@ -105,9 +105,9 @@ TEST_F(PluginTest, playsAsTheOptionsSay)
     EXPECT_EQ(character->getController().clip(), 1);
     EXPECT_TRUE(character->getFileToNode().isIdentity());
     EXPECT_EQ(findCharacter(*read("arm.gltf", "clip=\"Slow slide\"").getNode())->getController().clip(), 0);
-    EXPECT_EQ(character->getController().speed(), -2.0);
+    EXPECT_EQ(character->getController().layer(0).settings().speed, -2.0);
     EXPECT_EQ(character->getController().time(), 0.25);
-    EXPECT_EQ(character->getController().loopMode(), LoopMode::Once);
+    EXPECT_EQ(character->getController().layer(0).settings().loopMode, LoopMode::Once);
     const auto* keys = dynamic_cast<const CharacterKeys*>(character->getEventCallback());
     ASSERT_TRUE(keys);
     EXPECT_EQ(keys->getFadeSeconds(), 1.0);

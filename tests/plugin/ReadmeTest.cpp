@@ -2,6 +2,8 @@
 #include "plugin/PluginFolder.h"
 #include "support/ScratchFolder.h"
 #include "support/WorkingFolder.h"
+#include <osgGpuAnimation/animation/JointPose.h>
+#include <osgGpuAnimation/authoring/WithClipsOf.h>
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/JointMask.h>
@@ -91,7 +93,7 @@ TEST_F(ReadmeTest, tenLines)
     scene->addChild(node);
     scene->addChild(beside);
 
-    EXPECT_EQ(fox->getController().speed(), 1.0);
+    EXPECT_EQ(fox->getController().layer(0).settings().speed, 1.0);
     EXPECT_EQ(&fox->getAnimationSet(), &findCharacter(*other)->getAnimationSet());
     EXPECT_NE(&fox->getController(), &findCharacter(*other)->getController());
 }
@@ -164,7 +166,7 @@ TEST_F(ReadmeTest, clipsOfAnotherFile)
     ASSERT_TRUE(node.valid());
     AnimatedCharacter* fox = findCharacter(*node);
     osg::ref_ptr<osg::Node> moves = osgDB::readRefNodeFile("moves.glb");
-    auto merged = fox->getAnimationSet().withClipsOf(findCharacter(*moves)->getAnimationSet());
+    auto merged = withClipsOf(fox->getAnimationSet(), findCharacter(*moves)->getAnimationSet());
     if (succeeded(merged)) succeeded(fox->setAnimationSet(merged.value().set));
     EXPECT_EQ(fox->getAnimationSet().clips().size(), 8u);
     EXPECT_GE(fox->getAnimationSet().findClip("Run 2"), 0);
@@ -284,7 +286,7 @@ TEST_F(ReadmeDirectingTest, groundSpeed)
     const double speed = 1.0;
     succeeded(controller.play("Walk"));
     succeeded(controller.layer(0).setGroundSpeed(speed));
-    EXPECT_NEAR(controller.speed(), 1.0 / 0.71, 0.02);
+    EXPECT_NEAR(controller.layer(0).settings().speed, 1.0 / 0.71, 0.02);
     wanderer->setMatrix(osg::Matrix::translate(0, -speed * seconds, 0) * wanderer->getMatrix());
 
     // A foot on the ground stays at its place.

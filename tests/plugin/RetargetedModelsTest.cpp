@@ -2,9 +2,10 @@
 #include "gltf/Import.h"
 #include "plugin/SharedAssets.h"
 #include "support/RandomSet.h"
+#include <osgGpuAnimation/authoring/WithClipsOf.h>
 
 #include <osgGpuAnimation/animation/Pose.h>
-#include <osgGpuAnimation/animation/retarget/RigMatch.h>
+#include <osgGpuAnimation/authoring/retarget/RigMatch.h>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -72,7 +73,7 @@ TEST(RetargetedModelsTest, theWandererMovesAsTheKnightDoes)
     }
     const double ratio = (0.72 - 0.03) / (0.519 - 0.026); // of the legs at rest
     const double height = 1.55;
-    const Result<RetargetedSet> result = wanderer->withClipsOf(*knight, options);
+    const Result<RetargetedSet> result = withClipsOf(*wanderer, *knight, options);
     ASSERT_TRUE(result) << result.error().message;
     const AnimationSet &from = *knight, &made = *result.value().set;
     const RigMatch match =

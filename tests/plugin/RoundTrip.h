@@ -72,7 +72,7 @@ private:
         _character = &character;
         AnimationController& controller = character.getController();
         controller.stop();
-        controller.setLoopMode(AnimationController::LoopMode::Once); // a clip does not wrap at its end
+        controller.setLoopMode(LoopMode::Once); // a clip does not wrap at its end
         if (_clip >= 0)
         {
             static_cast<void>(controller.play(static_cast<std::size_t>(_clip)));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "plugin/SharedAssets.h"
 #include "plugin/StoredTest.h"
+#include <osgGpuAnimation/animation/JointPose.h>
 
 #include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/animation/keyframes/CompactTracks.h>
@@ -96,8 +97,8 @@ TEST_F(SerializersTest, charactersOfOneSetShareItAfterwards)
         AnimatedCharacter* second = findCharacter(*read->asGroup()->getChild(1));
         ASSERT_TRUE(first && second && first != second);
         EXPECT_EQ(&first->getAnimationSet(), &second->getAnimationSet());
-        EXPECT_EQ(first->getController().speed(), 1.0);
-        EXPECT_EQ(second->getController().speed(), 3.0);
+        EXPECT_EQ(first->getController().layer(0).settings().speed, 1.0);
+        EXPECT_EQ(second->getController().layer(0).settings().speed, 3.0);
         EXPECT_EQ(first->getChild(0), second->getChild(0)) << "the meshes";
         EXPECT_EQ(first->getAnimationSet().skeleton().joint(0).name, "arm \"1\" <&{ä");
         EXPECT_EQ(first->getAnimationSet().clips()[0].name(), "Slow slide");

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "plugin/StoredTest.h"
 #include "support/Limb.h"
+#include <osgGpuAnimation/animation/JointPose.h>
+#include <osgGpuAnimation/animation/LayerSnapshot.h>
 
 #include <osgGpuAnimation/animation/AnimationLayer.h>
 #include <osgGpuAnimation/animation/RootMotion.h>
@@ -84,8 +86,8 @@ TEST_F(StoredFieldsTest, ofALayer)
     const AnimationSet& set = character().getAnimationSet();
     LayerSnapshot layer;
     layer.state = PlayState::Paused;
-    layer.loopMode = LoopMode::PingPong;
-    layer.speed = -1.75;
+    layer.settings.loopMode = LoopMode::PingPong;
+    layer.settings.speed = -1.75;
     layer.activeClips = {{1, 0.125, 0.5, LoopMode::Once, false, false, 0.75, 0.25, 0, -1, 0, 1.0},
                          {2, 0.375, -0.5, LoopMode::PingPong, true, true, 0.5, 0.0625, 1, -1, 0, 1.0},
                          {0, 0.625, 2.0, LoopMode::PingPong, true, false, 0.875, 0.1875, 1, 0, 1, 0.4375},
@@ -99,18 +101,18 @@ TEST_F(StoredFieldsTest, ofALayer)
     layer.poseShare = {0.3125, 0.6875, 3.5, 0.5, FadeCurve::Smooth};
     for (std::size_t track = 0; track < set.trackCount(); ++track)
         layer.mask.push_back(0.25f * static_cast<float>(track + 1));
-    layer.mode = AnimationLayer::Mode::Additive;
-    layer.reference = AnimationLayer::Reference::FirstFrame;
-    layer.blendPriority = -3;
-    layer.parameter = {4.5, -5.5};
-    layer.isPhaseShared = true;
+    layer.settings.mode = AnimationLayer::Mode::Additive;
+    layer.settings.reference = AnimationLayer::Reference::FirstFrame;
+    layer.settings.blendPriority = -3;
+    layer.settings.parameter = {4.5, -5.5};
+    layer.settings.isPhaseShared = true;
     JointPose pose(character().getController().sharedSet());
     ASSERT_TRUE(pose.setTranslation(0, {1, 2, 3}));
     layer.pose = pose.tracks();
     AnimationLayer& over = character().getController().layer(1);
-    const Result<void> restored = over.restore(layer);
+    const Result<void> restored = layer.restoreTo(over);
     ASSERT_TRUE(restored) << restored.error().message;
-    const LayerSnapshot expected = over.snapshot(); // what the layer keeps
+    const LayerSnapshot expected = LayerSnapshot::of(over); // what the layer keeps
     EXPECT_TRUE(fieldsOf(expected.spaces.at(0)) == fieldsOf(layer.spaces[0]));
     expectSameFields(expected.activeClips, layer.activeClips);
     for (const char* format : storedFormats)
@@ -119,20 +121,20 @@ TEST_F(StoredFieldsTest, ofALayer)
         const osg::ref_ptr<AnimatedCharacter> back = read(format);
         ASSERT_TRUE(back);
         ASSERT_EQ(back->getController().layerCount(), 2u);
-        const LayerSnapshot found = back->getController().layer(1).snapshot();
+        const LayerSnapshot found = LayerSnapshot::of(back->getController().layer(1));
         EXPECT_EQ(found.state, expected.state);
-        EXPECT_EQ(found.loopMode, expected.loopMode);
-        EXPECT_EQ(found.speed, expected.speed);
+        EXPECT_EQ(found.settings.loopMode, expected.settings.loopMode);
+        EXPECT_EQ(found.settings.speed, expected.settings.speed);
         expectSameFields(found.activeClips, expected.activeClips);
         expectSameFields(found.spaces, expected.spaces);
         expectSameFields<Fade::State>({found.crossfade, found.weight, found.poseShare},
                                       {expected.crossfade, expected.weight, expected.poseShare});
         EXPECT_EQ(found.mask, expected.mask);
-        EXPECT_EQ(found.mode, expected.mode);
-        EXPECT_EQ(found.reference, expected.reference);
-        EXPECT_EQ(found.blendPriority, expected.blendPriority);
-        EXPECT_EQ(found.parameter, expected.parameter);
-        EXPECT_EQ(found.isPhaseShared, expected.isPhaseShared);
+        EXPECT_EQ(found.settings.mode, expected.settings.mode);
+        EXPECT_EQ(found.settings.reference, expected.settings.reference);
+        EXPECT_EQ(found.settings.blendPriority, expected.settings.blendPriority);
+        EXPECT_EQ(found.settings.parameter, expected.settings.parameter);
+        EXPECT_EQ(found.settings.isPhaseShared, expected.settings.isPhaseShared);
         ASSERT_EQ(found.pose.size(), 1u);
         EXPECT_EQ(found.pose[0].values.translation, expected.pose[0].values.translation);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/scene/Textures.h"
+#include "gltf/import/Textures.h"
 #include "plugin/EncodedPicture.h"
 #include "plugin/ModelBuilder.h"
 #include "plugin/PackedDocument.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/document/LoadDocument.h"
+#include "gltf/data/LoadDocument.h"
 
 #include "gltf/data/Accessor.h"
 #include "plugin/GlbText.h"

@@ -3,6 +3,7 @@
 
 #include "support/ReferencePose.h"
 #include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/Channel.h>
 
 #include <map>
 #include <random>

@@ -5,6 +5,7 @@
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/JointMask.h>
+#include <osgGpuAnimation/animation/JointPose.h>
 
 #include <layout.glsl>
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/JointPose.h>
 #include <osgGpuAnimation/animation/Pose.h>
 
 #include <memory>

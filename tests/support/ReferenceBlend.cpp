@@ -2,6 +2,7 @@
 #include "support/ReferenceBlend.h"
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/JointPose.h>
 #include <osgGpuAnimation/animation/Pose.h>
 
 #include <glm/geometric.hpp>

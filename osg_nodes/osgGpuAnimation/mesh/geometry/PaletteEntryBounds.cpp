@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 
+#include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/bounds/JointRange.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 

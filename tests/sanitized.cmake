@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 # What .ci/run runs under the sanitizers, as one program with nothing more to compile: sanitized.ViewersGLTest…
 # With ThreadSanitizer what has several threads, with AddressSanitizer also what clones, releases, keeps and reads.
-set(sanitized_sources nodes/TestCharacter.cpp nodes/NestedCameraGLTest.cpp nodes/ViewersGLTest.cpp
-    plugin/PagerGLTest.cpp plugin/ConcurrentLoadsTest.cpp plugin/ModelBuilder.cpp)
+set(sanitized_sources nodes/TestCharacter.cpp frame/NestedCameraGLTest.cpp nodes/ViewersGLTest.cpp
+    plugin/PagerGLTest.cpp plugin/ConcurrentLoadsTest.cpp gltf/ModelBuilder.cpp)
 if(OSGGPUANIMATION_SANITIZER STREQUAL address)
     list(APPEND sanitized_sources nodes/AnimatedCharacterGLTest.cpp nodes/AnimatedCrowdGLTest.cpp
-         nodes/CharacterDrawsGLTest.cpp nodes/EventChangesTest.cpp nodes/GlCallTrace.cpp nodes/GlObjectsGLTest.cpp
-         plugin/CloningGLTest.cpp plugin/SerializersGLTest.cpp)
+         frame/CharacterDrawsGLTest.cpp nodes/EventChangesTest.cpp frame/GlCallTrace.cpp frame/GlObjectsGLTest.cpp
+         plugin/CloningGLTest.cpp serializers/SerializersGLTest.cpp)
 endif()
 add_executable(sanitized_tests EXCLUDE_FROM_ALL ${sanitized_sources} $<TARGET_OBJECTS:test_support>)
 set(OSGGPUANIMATION_UNITY ON) # for this program in any case: its files are the other programs' too

@@ -3,8 +3,8 @@
 #include "assimp/SmallFiles.h"
 #include "plugin/ModelVertices.h"
 #include "plugin/PluginFolder.h"
-#include "plugin/RoundTrip.h"
 #include "plugin/SharedAssets.h"
+#include "serializers/RoundTrip.h"
 #include "support/ScratchFolder.h"
 
 #include <assimp/Importer.hpp>

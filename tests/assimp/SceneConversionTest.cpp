@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "assimp/SceneConversion.h"
 #include "gltf/data/Picture.h"
+#include "gltf/GlbParts.h"
 #include "gltf/Import.h"
-#include "plugin/GlbParts.h"
 #include "plugin/ModelVertices.h"
 #include "support/ScratchFolder.h"
 

@@ -2,7 +2,7 @@
 // libFuzzer target: the bytes of a .glb. Three of four mutations keep its container valid.
 #include "fuzz/Fuzzing.h"
 #include "gltf/file/ModelBytes.h"
-#include "plugin/GlbText.h"
+#include "gltf/GlbText.h"
 
 using namespace osgGpuAnimation;
 using namespace osgGpuAnimation::gltf;

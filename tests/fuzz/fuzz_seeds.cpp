@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // fuzz_seeds FOLDER: writes the initial corpus of fuzz_glb and fuzz_gltf into FOLDER/glb and FOLDER/gltf: small models,
 // one for each supported part of glTF. Fails if the import refuses a seed.
+#include "gltf/draco/DracoEncoder.h"
+#include "gltf/EncodedPicture.h"
 #include "gltf/file/Uri.h"
 #include "gltf/Import.h"
-#include "plugin/draco/DracoEncoder.h"
-#include "plugin/EncodedPicture.h"
-#include "plugin/LoadedDocument.h"
-#include "plugin/PackedDocument.h"
+#include "gltf/LoadedDocument.h"
+#include "gltf/PackedDocument.h"
 
 #include <meshoptimizer.h>
 

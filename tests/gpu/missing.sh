@@ -44,7 +44,8 @@ expect_from_go()
 }
 
 for file in "$here"/../*/*GLTest.cpp; do
-    program=$(basename "$(dirname "$file")")_tests
+    tests=$(basename "$(dirname "$file")")
+    program=$(sed -nE "s/^ *osggpuanimation_tests\\((\w+) FOLDERS [a-z ]*\\b$tests\\b.*/\\1_tests/p" "$here/../CMakeLists.txt")
     [[ " ${gl_tests[*]} " == *" $program "* ]] || fail "gl_tests in tests/setup.sh lacks $program"
 done
 

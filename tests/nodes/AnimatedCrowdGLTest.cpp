@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nodes/GlCallTrace.h"
+#include "frame/GlCallTrace.h"
 #include "support/TestCrowd.h"
 #include "support/ViewerGLTest.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nodes/Tube.h"
+#include "mesh/Tube.h"
 
 #include <osgGpuAnimation/looks/PbrMaterial.h>
 #include <osgGpuAnimation/looks/shading/PunctualLight.h>

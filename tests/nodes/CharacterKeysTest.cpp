@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nodes/Tube.h"
+#include "mesh/Tube.h"
 #include "support/NotifyLog.h"
 #include "support/TestCharacter.h"
 

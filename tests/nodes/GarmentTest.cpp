@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nodes/Tube.h"
+#include "mesh/Tube.h"
 #include "support/VertexDistance.h"
 
 #include <osgGpuAnimation/mesh/geometry/MaterialVariants.h>

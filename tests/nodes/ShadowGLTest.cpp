@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nodes/Panel.h"
+#include "looks/Panel.h"
 #include "support/TestCharacter.h"
 #include "support/ViewerGLTest.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "nodes/StudioPanorama.h"
+#include "looks/StudioPanorama.h"
 #include "support/TestCharacter.h"
 #include "support/ThreadingModels.h"
 #include "support/ViewerGLTest.h"

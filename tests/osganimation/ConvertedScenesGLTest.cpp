@@ -2,8 +2,8 @@
 #include "osganimation/SkeletonConversion.h"
 #include "osganimation/SmallRig.h"
 #include "plugin/PluginFolder.h"
-#include "plugin/RoundTrip.h"
 #include "plugin/SharedAssets.h"
+#include "serializers/RoundTrip.h"
 #include "support/ScratchFolder.h"
 #include "support/ViewerGLTest.h"
 

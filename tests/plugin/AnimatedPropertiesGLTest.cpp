@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "plugin/PointerFile.h"
-#include "plugin/StoredScene.h"
+#include "gltf/PointerFile.h"
+#include "serializers/StoredScene.h"
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>

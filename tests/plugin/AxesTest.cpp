@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "plugin/ModelBuilder.h"
-#include "plugin/StoredScene.h"
+#include "gltf/ModelBuilder.h"
+#include "serializers/StoredScene.h"
 
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "plugin/ModelImport.h"
+#include "gltf/ModelImport.h"
 #include "support/ShownSurface.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
@@ -20,7 +20,7 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
-class CharacterLevelsOfModelsTest : public ::testing::TestWithParam<const char*>
+class CharacterLevelsOfModelsTest : public ::testing::TestWithParam<std::string>
 {
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "plugin/SharedAssets.h"
-#include "plugin/StoredScene.h"
+#include "serializers/StoredScene.h"
 #include "support/Slowdown.h"
 #include "support/ViewerGLTest.h"
 

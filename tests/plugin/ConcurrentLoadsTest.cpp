@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "plugin/ModelBuilder.h"
+#include "gltf/ModelBuilder.h"
 #include "plugin/SharedAssets.h"
-#include "plugin/StoredScene.h"
+#include "serializers/StoredScene.h"
 
 #include <gtest/gtest.h>
 

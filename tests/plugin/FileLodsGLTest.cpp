@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "plugin/ImportedFile.h"
+#include "gltf/ImportedFile.h"
 #include "support/ViewerGLTest.h"
 
 #include <osg/MatrixTransform>

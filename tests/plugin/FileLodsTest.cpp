@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/Import.h"
-#include "plugin/ImportedFile.h"
-#include "plugin/LoadedDocument.h"
-#include "plugin/StoredScene.h"
+#include "gltf/ImportedFile.h"
+#include "gltf/LoadedDocument.h"
+#include "serializers/StoredScene.h"
 
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/Import.h"
+#include "gltf/SplitModel.h"
 #include "plugin/SharedAssets.h"
-#include "plugin/SplitModel.h"
-#include "plugin/StoredScene.h"
+#include "serializers/StoredScene.h"
 #include "support/VertexDistance.h"
 #include "support/ViewerGLTest.h"
 

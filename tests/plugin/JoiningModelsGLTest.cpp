@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "nodes/GlCallTrace.h"
-#include "plugin/ModelBuilder.h"
+#include "frame/GlCallTrace.h"
+#include "gltf/ModelBuilder.h"
 #include "plugin/PluginFolder.h"
 #include "support/ScratchFolder.h"
 #include "support/ViewerGLTest.h"
@@ -68,6 +68,11 @@ struct Kind
     const char* file;
     osg::ref_ptr<osg::Node> (*changed)(const osg::ref_ptr<osg::Node>& model); ///< null: as the file is
 };
+
+void PrintTo(const Kind& kind, std::ostream* out)
+{
+    *out << kind.name;
+}
 
 const Kind kinds[] = {
     {"Skinned", "arm.gltf", nullptr},       {"Morphing", "morph.gltf", nullptr},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "gltf/ModelImport.h"
 #include "plugin/BumpyTubes.h"
-#include "plugin/ModelImport.h"
 #include "plugin/PluginFolder.h"
 #include "support/PrimitiveCount.h"
 #include "support/ScratchFolder.h"
@@ -105,11 +105,8 @@ private:
     osg::ref_ptr<PrimitiveCount> _count = new PrimitiveCount;
 };
 
-struct ModelCase
-{
-    const char* file;
-    bool isCrowd;
-};
+/// See modelFile(); true: a crowd, else nodes.
+using ModelCase = std::pair<std::string, bool>;
 
 class LodModelsGLTest : public LodGLTest, public ::testing::WithParamInterface<ModelCase>
 {
@@ -117,10 +114,10 @@ class LodModelsGLTest : public LodGLTest, public ::testing::WithParamInterface<M
 
 TEST_P(LodModelsGLTest, lookAsWithAllTriangles)
 {
-    const std::string file = modelFile(GetParam().file);
-    if (file.empty()) GTEST_SKIP() << "there is no " << GetParam().file;
-    const osg::ref_ptr<osg::Group> all = makeScene(file, GetParam().isCrowd, 0.0f);
-    const osg::ref_ptr<osg::Group> fewer = makeScene(file, GetParam().isCrowd, 0.5f);
+    const std::string file = modelFile(GetParam().first);
+    if (file.empty()) GTEST_SKIP() << "there is no " << GetParam().first;
+    const osg::ref_ptr<osg::Group> all = makeScene(file, GetParam().second, 0.0f);
+    const osg::ref_ptr<osg::Group> fewer = makeScene(file, GetParam().second, 0.5f);
     // The widths of the scene in pixels; a character is about 150, 30 and 6 pixels wide.
     for (const double pixels : {1000.0, 200.0, 40.0})
     {
@@ -148,7 +145,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(ModelCase{"Wanderer.glb", true}, ModelCase{"Wanderer.glb", false}, ModelCase{"Serpent.glb", true},
                       ModelCase{"assets/Fox/Fox.glb", false}, ModelCase{"assets/CesiumMan/CesiumMan.glb", true},
                       ModelCase{"assets/Knight/Knight.glb", true}, ModelCase{"assets/Knight/Knight.glb", false}),
-    [](const auto& info) { return gltf::nameOfFile(info.param.file) + (info.param.isCrowd ? "Crowd" : "Nodes"); });
+    [](const auto& info) { return gltf::nameOfFile(info.param.first) + (info.param.second ? "Crowd" : "Nodes"); });
 
 TEST_F(LodGLTest, comeBackWhenGLObjectsWereReleased)
 {

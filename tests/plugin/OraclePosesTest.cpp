@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "plugin/ModelImport.h"
+#include "gltf/ModelImport.h"
 #include "plugin/ModelVertices.h"
 
 #include <gtest/gtest.h>
@@ -21,11 +21,8 @@ namespace
 
 using nlohmann::json;
 
-struct OracleCase
-{
-    const char* asset;   ///< see modelFile()
-    std::size_t posings; ///< files of poses below oracle/ whose names begin with the asset's
-};
+/// See modelFile(); how many files of poses below oracle/ have a name that begins with the asset's.
+using OracleCase = std::pair<std::string, std::size_t>;
 
 class OraclePosesTest : public ::testing::TestWithParam<OracleCase>
 {
@@ -128,13 +125,13 @@ TEST_P(OraclePosesTest, everyFrameIsWhatTheSpecificationSays)
     ImportOptions options;
     options.noRotation = true;
     ImportedModel model;
-    importOrSkip(GetParam().asset, model, options);
+    importOrSkip(GetParam().first, model, options);
     if (IsSkipped() || HasFatalFailure()) return;
     std::size_t posings = 0;
     for (const auto& entry : std::filesystem::directory_iterator(OSGGPUANIMATION_SHARED_ASSETS "/oracle"))
     {
         const std::string name = entry.path().filename().string();
-        if (name.rfind(nameOfFile(GetParam().asset) + '.', 0) != 0 || entry.path().extension() != ".json") continue;
+        if (name.rfind(nameOfFile(GetParam().first) + '.', 0) != 0 || entry.path().extension() != ".json") continue;
         SCOPED_TRACE(name);
         ++posings;
         poses = json::parse(readBytes(entry.path().string()));
@@ -144,7 +141,7 @@ TEST_P(OraclePosesTest, everyFrameIsWhatTheSpecificationSays)
             tolerance += poses["ambiguity"]["relative"].get<double>();
         compareAll(model);
     }
-    EXPECT_EQ(posings, GetParam().posings);
+    EXPECT_EQ(posings, GetParam().second);
 }
 
 INSTANTIATE_TEST_SUITE_P(Assets, OraclePosesTest,
@@ -156,6 +153,6 @@ INSTANTIATE_TEST_SUITE_P(Assets, OraclePosesTest,
                                            OracleCase{"assets/interpolation_test/interpolation_test.gltf", 9},
                                            OracleCase{"assets/probe/probe.gltf", 4},
                                            OracleCase{"assets/rigged_simple/rigged_simple.gltf", 2}),
-                         [](const auto& info) { return nameOfFile(info.param.asset); });
+                         [](const auto& info) { return nameOfFile(info.param.first); });
 
 } // namespace osgGpuAnimation::gltf

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "plugin/ModelImport.h"
+#include "gltf/ModelImport.h"
 #include "plugin/PluginFolder.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
@@ -95,7 +95,7 @@ private:
     std::map<const osg::Drawable*, Source> _sources;
 };
 
-class PickingTest : public ::testing::TestWithParam<const char*>
+class PickingTest : public ::testing::TestWithParam<std::string>
 {
 protected:
     static constexpr unsigned int seed = 20261121;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "plugin/ModelBuilder.h"
+#include "gltf/ModelBuilder.h"
 #include "plugin/PluginFolder.h"
 #include "support/NotifyLog.h"
 #include "support/ScratchFolder.h"

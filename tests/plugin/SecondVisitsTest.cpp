@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "plugin/PointerFile.h"
+#include "gltf/PointerFile.h"
 
 #include <gtest/gtest.h>
 

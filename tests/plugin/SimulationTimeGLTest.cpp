@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "plugin/SharedAssets.h"
-#include "plugin/StoredScene.h"
+#include "serializers/StoredScene.h"
 #include "support/ViewerGLTest.h"
 
 // The same simulation times show the same pictures, whatever the times before.

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: MIT
+#include "looks/StudioPanorama.h"
+
+#include <osgGpuAnimation/looks/Environment.h>
+#include <osgGpuAnimation/looks/environment/RadianceCube.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+
+#ifndef GL_RG
+#define GL_RG 0x8227
+#endif
+#ifndef GL_HALF_FLOAT
+#define GL_HALF_FLOAT 0x140B
+#endif
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// An image whose pixels all have the same bytes.
+template <typename Component>
+osg::ref_ptr<osg::Image> even(GLenum format, GLenum type, const std::vector<Component>& pixel, int width = 8,
+                              int height = 4)
+{
+    osg::ref_ptr<osg::Image> image = new osg::Image;
+    image->allocateImage(width, height, 1, format, type);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            std::memcpy(image->data(static_cast<unsigned int>(x), static_cast<unsigned int>(y)), pixel.data(),
+                        pixel.size() * sizeof(Component));
+    return image;
+}
+
+osg::ref_ptr<osg::TextureCubeMap> cubeOf(const std::vector<osg::ref_ptr<osg::Image>>& images)
+{
+    osg::ref_ptr<osg::TextureCubeMap> cube = new osg::TextureCubeMap;
+    for (unsigned int face = 0; face < images.size(); ++face)
+        cube->setImage(face, images[face]);
+    return cube;
+}
+
+struct FormatCase
+{
+    const char* name;
+    osg::ref_ptr<osg::Image> image;
+    osg::Vec3f radiance;
+};
+
+std::vector<FormatCase> formatCases()
+{
+    using Bytes = std::vector<unsigned char>;
+    using Shorts = std::vector<unsigned short>;
+    using Floats = std::vector<float>;
+    constexpr float infinite = std::numeric_limits<float>::infinity(), none = std::numeric_limits<float>::quiet_NaN();
+    // sRGB: 188 of 255 is 0.503, 128 of 255 is 0.216.
+    return {
+        {"floats", even(GL_RGB, GL_FLOAT, Floats{0.25f, 2.0f, 30.0f}), {0.25f, 2.0f, 30.0f}},
+        {"floats with alpha", even(GL_RGBA, GL_FLOAT, Floats{1.0f, 2.0f, 3.0f, 0.0f}), {1.0f, 2.0f, 3.0f}},
+        {"half floats", even(GL_RGB, GL_HALF_FLOAT, Shorts{0x3c00, 0x4400, 0x3400}), {1.0f, 4.0f, 0.25f}},
+        {"bytes", even(GL_RGB, GL_UNSIGNED_BYTE, Bytes{255, 188, 128}), {1.0f, 0.503f, 0.216f}},
+        {"bytes, blue first", even(GL_BGRA, GL_UNSIGNED_BYTE, Bytes{255, 188, 128, 9}), {0.216f, 0.503f, 1.0f}},
+        {"bytes, three of them, blue first",
+         even(GL_BGR, GL_UNSIGNED_BYTE, Bytes{255, 188, 128}),
+         {0.216f, 0.503f, 1.0f}},
+        {"red and green", even(GL_RG, GL_FLOAT, Floats{0.25f, 0.5f}), {0.25f, 0.5f, 0.5f}},
+        {"grey floats with alpha", even(GL_LUMINANCE_ALPHA, GL_FLOAT, Floats{0.25f, 0.9f}), {0.25f, 0.25f, 0.25f}},
+        {"grey bytes", even(GL_LUMINANCE, GL_UNSIGNED_BYTE, Bytes{188}), {0.503f, 0.503f, 0.503f}},
+        {"16 bits", even(GL_RGB, GL_UNSIGNED_SHORT, Shorts{65535, 48316, 0}), {1.0f, 0.503f, 0.0f}},
+        {"not finite", even(GL_RGB, GL_FLOAT, Floats{none, infinite, 1.0f}), {0.0f, 0.0f, 1.0f}},
+        {"out of range", even(GL_RGB, GL_FLOAT, Floats{-3.0f, 1e30f, 1.0f}), {0.0f, 65504.0f, 1.0f}},
+        {"half floats, not finite", even(GL_RGB, GL_HALF_FLOAT, Shorts{0x7c00, 0x7e01, 0xbc00}), {0.0f, 0.0f, 0.0f}},
+    };
+}
+
+TEST(EnvironmentTest, picturesAreReadAsLinearRadiance)
+{
+    for (const FormatCase& each : formatCases())
+    {
+        SCOPED_TRACE(each.name);
+        const auto cube = RadianceCube::fromPanorama(*each.image);
+        ASSERT_TRUE(cube) << cube.error().message;
+        const std::array<osg::Vec3f, 9> harmonics = cube.value()->harmonics();
+        for (int channel = 0; channel < 3; ++channel)
+        {
+            const float expected = each.radiance[channel];
+            EXPECT_NEAR(harmonics[0][channel], expected, 0.002f * std::max(expected, 1.0f)) << channel;
+            for (std::size_t i = 1; i < harmonics.size(); ++i)
+                EXPECT_NEAR(harmonics[i][channel], 0.0f, 0.002f * std::max(expected, 1.0f)) << i;
+        }
+    }
+}
+
+struct SlopeCase
+{
+    const char* name;
+    float (*radiance)(const osg::Vec3f& direction); ///< beside an even one of 2
+    std::size_t harmonic;
+    float expected; ///< the irradiance over pi of cosines keeps 2/3, of the second degree 1/4
+};
+
+const SlopeCase slopeCases[] = {
+    {"brighter above", [](const osg::Vec3f& d) { return d.y(); }, 1, 2.0f / 3.0f},
+    {"brighter at +Z", [](const osg::Vec3f& d) { return d.z(); }, 2, 2.0f / 3.0f},
+    {"brighter at +X", [](const osg::Vec3f& d) { return d.x(); }, 3, 2.0f / 3.0f},
+    {"xy", [](const osg::Vec3f& d) { return d.x() * d.y(); }, 4, 0.25f},
+    {"yz", [](const osg::Vec3f& d) { return d.y() * d.z(); }, 5, 0.25f},
+    {"3zz - 1", [](const osg::Vec3f& d) { return 3.0f * d.z() * d.z() - 1.0f; }, 6, 0.25f},
+    {"xz", [](const osg::Vec3f& d) { return d.x() * d.z(); }, 7, 0.25f},
+    {"xx - yy", [](const osg::Vec3f& d) { return d.x() * d.x() - d.y() * d.y(); }, 8, 0.25f},
+};
+
+TEST(EnvironmentTest, irradianceHasTheHarmonicsOfThePictures)
+{
+    for (const SlopeCase& each : slopeCases)
+    {
+        const auto radiance = [&](const osg::Vec3f& d) { return osg::Vec3f(1, 1, 1) * (2.0f + each.radiance(d)); };
+        for (const auto& cube : {RadianceCube::fromPanorama(*makePanorama(256, radiance)),
+                                 RadianceCube::fromFaces(*makeFaces(32, radiance))})
+        {
+            ASSERT_TRUE(cube);
+            const std::array<osg::Vec3f, 9> harmonics = cube.value()->harmonics();
+            EXPECT_NEAR(harmonics[0].x(), 2.0f, 0.005f) << each.name;
+            for (std::size_t i = 1; i < harmonics.size(); ++i)
+                EXPECT_NEAR(harmonics[i].x(), i == each.harmonic ? each.expected : 0.0f, 0.005f) << each.name << i;
+        }
+    }
+}
+
+// Pictures of more pixels than faces have are reduced as they are read: 2,100 pixels across leave a part of a block.
+TEST(EnvironmentTest, largePicturesAreReduced)
+{
+    const auto radiance = [](const osg::Vec3f& d) { return osg::Vec3f(1, 1, 1) * (d.x() > 0.0f ? 1.5f : 1.0f); };
+    const auto expected = RadianceCube::fromPanorama(*makePanorama(1024, radiance)).value()->harmonics();
+    for (const auto& cube : {RadianceCube::fromPanorama(*makePanorama(2100, radiance)).value(),
+                             RadianceCube::fromFaces(*makeFaces(515, radiance)).value()})
+    {
+        const auto found = cube->harmonics();
+        for (std::size_t i = 0; i < found.size(); ++i)
+            EXPECT_NEAR(found[i].x(), expected[i].x(), 0.005f) << i;
+        for (int face = 0; face < 6; ++face)
+            for (const osg::Vec3f& pixel : cube->face(face))
+                ASSERT_TRUE(pixel.x() > 0.999f && pixel.x() < 1.501f) << face << ": " << pixel.x();
+    }
+}
+
+// The first and the last column of a panorama are neighbours, at -X.
+TEST(EnvironmentTest, aPanoramaIsClosed)
+{
+    const auto cube = RadianceCube::fromPanorama(
+        *makePanorama(16, [](const osg::Vec3f& d) { return osg::Vec3f(1, 1, 1) * (2.0f + d.z()); }));
+    const std::vector<osg::Vec3f>& face = cube.value()->face(1);
+    for (int column = 1; column < RadianceCube::side; ++column)
+    {
+        const std::size_t at = static_cast<std::size_t>(RadianceCube::side * RadianceCube::side / 2 + column);
+        EXPECT_NEAR(face[at].x(), face[at - 1].x(), 0.02f) << column;
+    }
+}
+
+TEST(EnvironmentTest, faultyPicturesAreRefusedWithAMessage)
+{
+    const std::vector<unsigned char> white{255, 255, 255};
+    const osg::ref_ptr<osg::Image> layers = new osg::Image;
+    layers->allocateImage(8, 4, 3, GL_RGB, GL_UNSIGNED_BYTE);
+    const std::string formats = "a panorama: expected RGB or luminance of 8 or 16 bits, half floats or floats, found ";
+    const std::pair<std::string, osg::ref_ptr<osg::Image>> panoramas[] = {
+        {"a panorama: expected a picture, found null", nullptr},
+        {"a panorama: expected a picture, found no pixels", new osg::Image},
+        {"a panorama: expected twice as many pixels across as up, found 4x4",
+         even(GL_RGB, GL_UNSIGNED_BYTE, white, 4, 4)},
+        {"a panorama: expected a picture of one layer, found 3", layers},
+        {formats + "the pixel format 0x1902 with the data type 0x1401",
+         even(GL_DEPTH_COMPONENT, GL_UNSIGNED_BYTE, std::vector<unsigned char>{1})},
+        {formats + "the pixel format 0x1907 with the data type 0x1405",
+         even(GL_RGB, GL_UNSIGNED_INT, std::vector<unsigned int>{1, 1, 1})},
+    };
+    const osg::ref_ptr<Environment> environment = new Environment;
+    const osg::ref_ptr<osg::Image> kept = even(GL_RGB, GL_UNSIGNED_BYTE, white);
+    ASSERT_TRUE(environment->setPanorama(kept));
+    for (const auto& [message, panorama] : panoramas)
+    {
+        const Result<void> taken = environment->setPanorama(panorama);
+        EXPECT_EQ(taken ? "" : taken.error().message, message);
+        EXPECT_EQ(environment->getPanorama(), kept);
+    }
+    const osg::ref_ptr<osg::Image> fine = even(GL_RGB, GL_UNSIGNED_BYTE, white, 4, 4),
+                                   wide = even(GL_RGB, GL_UNSIGNED_BYTE, white, 8, 4),
+                                   large = even(GL_RGB, GL_UNSIGNED_BYTE, white, 8, 8);
+    const std::pair<std::string, osg::ref_ptr<osg::TextureCubeMap>> cubes[] = {
+        {"the faces of surroundings: expected a cube map, found null", nullptr},
+        {"the face POSITIVE_X: expected a picture, found no pixels", new osg::TextureCubeMap},
+        {"the face NEGATIVE_Z: expected a picture, found no pixels", cubeOf({fine, fine, fine, fine, fine})},
+        {"the face POSITIVE_X: expected 8x8 pixels, found 8x4", cubeOf({wide, wide, wide, wide, wide, wide})},
+        {"the face NEGATIVE_Y: expected 4x4 pixels, found 8x8", cubeOf({fine, fine, fine, large, fine, fine})},
+    };
+    for (const auto& [message, faces] : cubes)
+    {
+        const Result<void> taken = environment->setFaces(faces);
+        EXPECT_EQ(taken ? "" : taken.error().message, message);
+        EXPECT_EQ(environment->getFaces(), nullptr);
+    }
+}
+
+TEST(EnvironmentTest, numbersOutOfRangeAreRefused)
+{
+    constexpr float infinite = std::numeric_limits<float>::infinity(), none = std::numeric_limits<float>::quiet_NaN();
+    const osg::ref_ptr<Environment> environment = new Environment;
+    environment->setRotation(2.0f);
+    for (const float wrong : {-1.0f, infinite, -infinite, none})
+    {
+        environment->setIntensity(3.0f);
+        environment->setIntensity(wrong);
+        EXPECT_EQ(environment->getIntensity(), 0.0f) << wrong;
+        if (std::isfinite(wrong)) continue;
+        environment->setRotation(wrong);
+        EXPECT_EQ(environment->getRotation(), 2.0f) << wrong;
+    }
+}
+
+osg::Vec3f direction(float x, float y, float z)
+{
+    osg::Vec3f towards(x, y, z);
+    towards.normalize();
+    return towards;
+}
+
+struct KeyLightCase
+{
+    const char* name;
+    osg::Vec3f (*radiance)(const osg::Vec3f& direction); ///< glTF's axes
+    osg::Vec3f towards;
+    float least, most; ///< the share
+};
+
+constexpr float noShare = 0.0f;
+
+const KeyLightCase keyLightCases[] = {
+    // Its three lobes have 0.30, 0.04 and 0.11 of the irradiance 1.07 of the ground.
+    {"the studio", studioRadiance, direction(0.6f, 1.1f, 0.9f), 0.22f, 0.3f},
+    {"even", [](const osg::Vec3f&) { return osg::Vec3f(1, 1, 1); }, {0, 1, 0}, noShare, noShare},
+    {"black", [](const osg::Vec3f&) { return osg::Vec3f(); }, {0, 1, 0}, noShare, noShare},
+    {"a bright ground",
+     [](const osg::Vec3f& d) { return osg::Vec3f(1, 1, 1) * (d.y() < 0.0f ? 9.0f : 1.0f); },
+     {0, 1, 0},
+     noShare,
+     0.05f},
+    {"a small sun",
+     [](const osg::Vec3f& d)
+     { return osg::Vec3f(1, 1, 1) * (d * direction(-2, 1, 1) > 0.9994f ? 2000.0f : 0.2f); }, // within 2 degrees
+     direction(-2, 1, 1), 0.79f, 0.87f},
+    {"the higher of two",
+     [](const osg::Vec3f& d)
+     {
+         const float lamps = (d * direction(1, 1, 0) > 0.995f) + (d * direction(-4, 1, 0) > 0.995f);
+         return osg::Vec3f(1, 1, 1) * (lamps > 0.0f ? 50.0f : 0.1f);
+     },
+     direction(1, 1, 0), 0.6f, 0.75f},
+};
+
+TEST(EnvironmentTest, theKeyLightIsTheOneThatBrightensTheGroundMost)
+{
+    for (const KeyLightCase& each : keyLightCases)
+    {
+        SCOPED_TRACE(each.name);
+        const KeyLight light = RadianceCube::fromPanorama(*makePanorama(512, each.radiance)).value()->keyLight();
+        EXPECT_GE(light.share, each.least);
+        EXPECT_LE(light.share, each.most);
+        EXPECT_GT(light.towards * each.towards, 0.9994f) << "2 degrees";
+        EXPECT_NEAR(light.towards.length(), 1.0f, 1e-5f);
+    }
+}
+
+} // namespace
+
+} // namespace osgGpuAnimation

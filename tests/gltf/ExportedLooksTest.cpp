@@ -302,6 +302,7 @@ TEST(ExportedLooksTest, picturesOfAllFormatsArePng)
                  {GL_RGB, GL_UNSIGNED_SHORT, top, GL_RGB},
                  {GL_RGBA, GL_UNSIGNED_SHORT, bottom, GL_RGBA},
                  {GL_BGRA, GL_UNSIGNED_BYTE, bottom, GL_RGBA},
+                 {GL_BGRA, GL_UNSIGNED_BYTE, top, GL_RGBA},
                  {GL_RGB, GL_FLOAT, bottom, GL_RGBA}};
     for (const auto& each : cases)
     {

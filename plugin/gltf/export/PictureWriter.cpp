@@ -42,6 +42,7 @@ osg::ref_ptr<osg::Image> asRgba(const osg::Image& image)
     osg::ref_ptr<osg::Image> rgba = new osg::Image;
     rgba->allocateImage(image.s(), image.t(), 1, GL_RGBA, GL_UNSIGNED_BYTE);
     if (!rgba->data()) return nullptr;
+    rgba->setOrigin(image.getOrigin());
     for (int y = 0; y < image.t(); ++y)
         for (int x = 0; x < image.s(); ++x)
         {

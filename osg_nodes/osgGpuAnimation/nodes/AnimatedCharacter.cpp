@@ -310,13 +310,11 @@ void AnimatedCharacter::traverse(osg::NodeVisitor& visitor)
             traverseWithBounds(*this, now, visitor);
         else if (!keepFlattenedPlace(*this, visitor))
             osg::MatrixTransform::traverse(visitor);
-        prepareFirstDraw(
-            visitor, {*this, *_controller, _axes->rootMatrix, _meshes.getPixelError(), _isDrawnTogether});
+        prepareFirstDraw(visitor, {*this, *_controller, _axes->rootMatrix, _meshes.getPixelError(), _isDrawnTogether});
         return;
     }
     const DepthPass pass(*cullVisitor);
-    PoseStage::draw(*cullVisitor,
-                    {*this, *_controller, _axes->rootMatrix, _meshes.getPixelError(), _isDrawnTogether});
+    PoseStage::draw(*cullVisitor, {*this, *_controller, _axes->rootMatrix, _meshes.getPixelError(), _isDrawnTogether});
 }
 
 osg::BoundingBox AnimatedCharacter::boundsOf(const std::vector<PlayedClip>& played) const

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/mesh/geometry/PosedMesh.h>
 
-#include <osgGpuAnimation/animation/keyframes/PosedKeyframe.h>
 #include <osgGpuAnimation/animation/JointPose.h>
+#include <osgGpuAnimation/animation/keyframes/PosedKeyframe.h>
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/mesh/geometry/PrimitiveRange.h>
 

@@ -158,6 +158,13 @@ TEST_F(MasksGLTest, aNumberThatIsUsedAgainIsANewPose)
     EXPECT_LE(set->masks().count(), 3u);
 }
 
+TEST_F(MasksGLTest, aMaskCountsAfterABatchWithoutOne)
+{
+    expectPose(*batchNow(), twinNow());
+    setSpine(0.4f);
+    expectPose(*batchNow(), twinNow());
+}
+
 // The draw side evaluates a frame later, when the controllers have gone on.
 TEST_F(MasksGLTest, framesThatAreStillDrawnKeepTheirMasks)
 {

@@ -108,11 +108,12 @@ struct ModelMembers
         accessor.sparse = {};
         const JsonValue sparse = json["sparse"];
         if (!sparse) return;
-        auto& [count, isSparse, indices, values] = accessor.sparse;
-        isSparse = true;
-        read(sparse["count"], count);
+        accessor.sparse.isSparse = true;
+        read(sparse["count"], accessor.sparse.count);
+        auto& indices = accessor.sparse.indices;
         readAll(sparse["indices"], "bufferView", indices.bufferView, "byteOffset", indices.byteOffset, "componentType",
                 indices.componentType);
+        auto& values = accessor.sparse.values;
         readAll(sparse["values"], "bufferView", values.bufferView, "byteOffset", values.byteOffset);
     }
 

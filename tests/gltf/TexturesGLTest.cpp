@@ -59,17 +59,7 @@ protected:
     }
 };
 
-class TexturesCoreGLTest : public TexturesGLTest
-{
-protected:
-    osg::ref_ptr<osg::GraphicsContext::Traits> traits() const override
-    {
-        osg::ref_ptr<osg::GraphicsContext::Traits> wanted = GLTest::traits();
-        wanted->glContextVersion = "3.3";
-        wanted->glContextProfileMask = 1;
-        return wanted;
-    }
-};
+using TexturesCoreGLTest = InCoreProfile<TexturesGLTest>;
 
 struct FormatCase
 {

@@ -51,17 +51,7 @@ osg::ref_ptr<osg::GraphicsContext::Traits> sizedTraits(int width, int height)
     return traits;
 }
 
-class CoreContextGLTest : public GLTest
-{
-protected:
-    osg::ref_ptr<osg::GraphicsContext::Traits> traits() const override
-    {
-        osg::ref_ptr<osg::GraphicsContext::Traits> wanted = GLTest::traits();
-        wanted->glContextVersion = "3.3";
-        wanted->glContextProfileMask = 1;
-        return wanted;
-    }
-};
+using CoreContextGLTest = InCoreProfile<GLTest>;
 
 } // namespace
 

@@ -85,6 +85,20 @@ private:
     osg::ref_ptr<EglGraphicsContext> _context;
 };
 
+/// The fixture in a context of the core profile.
+template <typename Fixture>
+class InCoreProfile : public Fixture
+{
+protected:
+    osg::ref_ptr<osg::GraphicsContext::Traits> traits() const override
+    {
+        osg::ref_ptr<osg::GraphicsContext::Traits> wanted = Fixture::traits();
+        wanted->glContextVersion = "3.3";
+        wanted->glContextProfileMask = 1;
+        return wanted;
+    }
+};
+
 } // namespace osgGpuAnimation
 
 /// Fails the test, with the error code, if GL has a pending error.

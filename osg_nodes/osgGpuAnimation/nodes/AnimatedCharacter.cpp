@@ -57,7 +57,7 @@ AnimatedCharacter::AnimatedCharacter() : AnimatedCharacter(nullptr) {}
 
 AnimatedCharacter::AnimatedCharacter(std::shared_ptr<const AnimationSet> set)
     : _controller(std::make_unique<AnimationController>(std::move(set))),
-      _worldTargets(std::make_unique<WorldTargets>()), _meshes(*this, _controller.get(), nullptr),
+      _worldTargets(std::make_unique<WorldTargets>()), _meshes(*this, _controller->sharedSet(), _controller.get()),
       _wardrobe(std::make_shared<Wardrobe>())
 {
     static const std::shared_ptr<const Axes> identity = std::make_shared<const Axes>();
@@ -72,7 +72,7 @@ AnimatedCharacter::AnimatedCharacter(const AnimatedCharacter& other, const osg::
     : osg::MatrixTransform(other, copyop), _controller(std::make_unique<AnimationController>(*other._controller)),
       _axes(other._axes), _clipBounds(other._clipBounds), _mixBounds(other._mixBounds), _updateTime(other._updateTime),
       _worldTargets(std::make_unique<WorldTargets>(*other._worldTargets)), _isDrawnTogether(other._isDrawnTogether),
-      _meshes(*this, _controller.get(), nullptr), _wardrobe(other._wardrobe)
+      _meshes(*this, _controller->sharedSet(), _controller.get()), _wardrobe(other._wardrobe)
 {
     _meshes.copySettings(other._meshes);
     // osg::Node copies its other callbacks, but not the event callbacks.

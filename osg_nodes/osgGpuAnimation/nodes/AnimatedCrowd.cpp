@@ -33,11 +33,6 @@ namespace osgGpuAnimation
 namespace
 {
 
-Error noSuchInstance()
-{
-    return Error{"the crowd has no such instance (any more)"};
-}
-
 /// fileToNode, then the placement as seen from the origin.
 osg::Matrixd rootFrom(const osg::Vec3d& origin, const osg::Matrixd& fileToNode, const osg::Matrixd& placement)
 {
@@ -53,7 +48,7 @@ AnimatedCrowd::AnimatedCrowd() : AnimatedCrowd(nullptr, {}) {}
 AnimatedCrowd::AnimatedCrowd(std::shared_ptr<const AnimationSet> set,
                              const std::vector<osg::ref_ptr<SkinnedGeometry>>& meshes)
     : _instances(std::make_unique<CrowdInstances>(std::move(set))), _posed(std::make_unique<PosedInstances>()),
-      _worldTargets(std::make_unique<WorldTargets>()), _meshes(*this, nullptr, _instances->set())
+      _worldTargets(std::make_unique<WorldTargets>()), _meshes(*this, _instances->set())
 {
     // Not STATIC: the Optimizer must not flatten the transforms above into the bind pose.
     setDataVariance(osg::Object::DYNAMIC);
@@ -86,7 +81,7 @@ AnimatedCrowd::AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copy
     : osg::Transform(other, copyop), _instances(std::make_unique<CrowdInstances>(*other._instances)),
       _posed(std::make_unique<PosedInstances>()), _fileToNode(other._fileToNode), _origin(other._origin),
       _hasOrigin(other._hasOrigin), _updateTime(other._updateTime),
-      _worldTargets(std::make_unique<WorldTargets>(*other._worldTargets)), _meshes(*this, nullptr, _instances->set()),
+      _worldTargets(std::make_unique<WorldTargets>(*other._worldTargets)), _meshes(*this, _instances->set()),
       _sharedPoses(other._sharedPoses ? std::make_unique<SharedPoses>(*other._sharedPoses) : nullptr)
 {
     _meshes.copySettings(other._meshes);
@@ -157,7 +152,7 @@ bool AnimatedCrowd::remove(Instance instance)
 Result<void> AnimatedCrowd::setPlacement(Instance instance, const osg::Matrixd& placement)
 {
     const std::size_t index = _instances->indexOf(instance);
-    if (index == CrowdInstances::none) return noSuchInstance();
+    if (index == CrowdInstances::none) return CrowdInstances::noInstance();
     const Result<AffineMatrix> root = toRootMatrix(rootFrom(_origin, _fileToNode, placement), "the placement", false);
     if (!root) return root.error();
     _instances->move(index, root.value(), (_fileToNode * placement).getTrans());
@@ -168,7 +163,7 @@ Result<void> AnimatedCrowd::setPlacement(Instance instance, const osg::Matrixd& 
 Result<void> AnimatedCrowd::setTint(Instance instance, const osg::Vec4& tint)
 {
     const std::size_t index = _instances->indexOf(instance);
-    if (index == CrowdInstances::none) return noSuchInstance();
+    if (index == CrowdInstances::none) return CrowdInstances::noInstance();
     _instances->setTint(index, toRgba(tint));
     return {};
 }
@@ -182,7 +177,7 @@ osg::Vec4 AnimatedCrowd::getTint(Instance instance) const
 Result<osg::Matrixd> AnimatedCrowd::jointToCrowd(Instance instance, std::size_t joint) const
 {
     const std::size_t index = _instances->indexOf(instance);
-    if (index == CrowdInstances::none) return noSuchInstance();
+    if (index == CrowdInstances::none) return CrowdInstances::noInstance();
     const std::size_t count = getAnimationSet().skeleton().jointCount();
     if (joint >= count) return Error{"there is no joint " + std::to_string(joint) + " among " + std::to_string(count)};
     return toOsg(Pose::jointToModel(getAnimationSet(), _instances->instruction(index), joint)) * fileToSpace(index);
@@ -204,7 +199,7 @@ void AnimatedCrowd::setInstanceEventCallback(std::function<void(Instance, const 
 Result<void> AnimatedCrowd::setStateGraph(Instance instance, std::shared_ptr<const StateGraph> graph, std::size_t layer)
 {
     const std::size_t index = _instances->indexOf(instance);
-    if (index == CrowdInstances::none) return noSuchInstance();
+    if (index == CrowdInstances::none) return CrowdInstances::noInstance();
     _instances->setStateMachine(index, graph ? std::make_unique<StateMachine>(std::move(graph), layer) : nullptr);
     dirtyBound();
     return {};
@@ -241,7 +236,7 @@ NodeConstraint AnimatedCrowd::constraint(Instance instance, const std::string& n
 Result<void> AnimatedCrowd::setModelTransforms(Instance instance, std::size_t layer,
                                                const std::vector<osg::Matrixd>& jointToCrowd)
 {
-    if (!contains(instance)) return noSuchInstance();
+    if (!contains(instance)) return CrowdInstances::noInstance();
     return poseJoints(*getController(instance), layer, jointToCrowd, fileToSpace(_instances->indexOf(instance)));
 }
 

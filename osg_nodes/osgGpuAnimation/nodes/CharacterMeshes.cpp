@@ -13,10 +13,10 @@
 namespace osgGpuAnimation
 {
 
-CharacterMeshes::CharacterMeshes(osg::Group& node, const AnimationController* controller,
-                                 std::shared_ptr<const AnimationSet> set)
-    : _node(node), _controller(controller), _set(std::move(set)), _variantMeshes(std::make_shared<VariantMeshes>()),
-      _properties(controller ? AnimatedProperties::of(controller->set()) : nullptr)
+CharacterMeshes::CharacterMeshes(osg::Group& node, const std::shared_ptr<const AnimationSet>& set,
+                                 const AnimationController* controller)
+    : _node(node), _set(set), _controller(controller), _variantMeshes(std::make_shared<VariantMeshes>()),
+      _properties(controller ? AnimatedProperties::of(*set) : nullptr)
 {
 }
 
@@ -31,19 +31,9 @@ void CharacterMeshes::copySettings(const CharacterMeshes& other)
 
 CharacterMeshes::~CharacterMeshes() = default;
 
-const AnimationSet& CharacterMeshes::set() const
-{
-    return _controller ? _controller->set() : *_set;
-}
-
-void CharacterMeshes::takeSet(std::shared_ptr<const AnimationSet> set)
-{
-    _set = std::move(set);
-}
-
 void CharacterMeshes::forgetProperties()
 {
-    _properties = AnimatedProperties::of(set());
+    _properties = AnimatedProperties::of(*_set);
 }
 
 SkinnedGeometry* CharacterMeshes::find(const std::string& name) const
@@ -112,23 +102,23 @@ void CharacterMeshes::showProperties()
 {
     if (!_properties) return;
     if (!_properties->isBound()) _properties->bind(_node);
-    _properties->apply(set(), _controller->instruction());
+    _properties->apply(*_set, _controller->instruction());
 }
 
 Result<void> CharacterMeshes::setPixelError(float pixels)
 {
-    const Result<void> prepared = LodRange::prepare(pixels, _node, set());
+    const Result<void> prepared = LodRange::prepare(pixels, _node, *_set);
     if (!prepared) return prepared;
     _pixelError = pixels;
-    if (_levels && !_levels->isOf(_node, set())) _levels = nullptr;
+    if (_levels && !_levels->isOf(_node, *_set)) _levels = nullptr;
     createLevels();
     return {};
 }
 
 void CharacterMeshes::createLevels()
 {
-    const bool isNeeded = !_controller && _pixelError > 0.0f && set().paletteSize() > 0;
-    if (isNeeded && !_levels) _levels = std::make_shared<const CharacterLevels>(_node, set());
+    const bool isNeeded = !_controller && _pixelError > 0.0f && _set->paletteSize() > 0;
+    if (isNeeded && !_levels) _levels = std::make_shared<const CharacterLevels>(_node, *_set);
 }
 
 } // namespace osgGpuAnimation

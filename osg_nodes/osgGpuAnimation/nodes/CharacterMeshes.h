@@ -66,24 +66,23 @@ private:
     friend class AnimatedCrowd;
     friend struct CrowdDetail;
 
-    /// node: their parent. controller: of the character; null: a crowd. set: of the crowd.
-    CharacterMeshes(osg::Group& node, const AnimationController* controller, std::shared_ptr<const AnimationSet> set);
+    /// node: their parent. set: the place where the node keeps its set. controller: of the character; null: a crowd.
+    CharacterMeshes(osg::Group& node, const std::shared_ptr<const AnimationSet>& set,
+                    const AnimationController* controller = nullptr);
 
     void copySettings(const CharacterMeshes& other); ///< other: of a node with the same meshes
-    const AnimationSet& set() const;
-    void takeSet(std::shared_ptr<const AnimationSet> set); ///< another set of the crowd
-    void forgetProperties();                               ///< after another set of the character
-    void showVariant();                                    ///< after the node has got further meshes
-    void showProperties();                                 ///< those of the controller's present pose
-    void createLevels();                                   ///< of the crowd, unless they exist
+    void forgetProperties();                         ///< after another set of the character
+    void showVariant();                              ///< after the node has got further meshes
+    void showProperties();                           ///< those of the controller's present pose
+    void createLevels();                             ///< of the crowd, unless they exist
     template <typename Change>
     void change(Change change);
 
     osg::Group& _node;
-    const AnimationController* _controller = nullptr; ///< null: a crowd
-    std::shared_ptr<const AnimationSet> _set;         ///< the crowd's; null: a character
-    std::shared_ptr<VariantMeshes> _variantMeshes;    ///< never null, shared with clones and crowds
-    std::unique_ptr<AnimatedProperties> _properties;  ///< null: the set has none, or a crowd
+    const std::shared_ptr<const AnimationSet>& _set; ///< the node's present one, never null
+    const AnimationController* _controller;          ///< null: a crowd
+    std::shared_ptr<VariantMeshes> _variantMeshes;   ///< never null, shared with clones and crowds
+    std::unique_ptr<AnimatedProperties> _properties; ///< null: the set has none, or a crowd
     std::string _variant;
     float _pixelError = 0.0f;                       ///< pixels
     std::shared_ptr<const CharacterLevels> _levels; ///< of the crowd as a whole; null: no pixel error yet

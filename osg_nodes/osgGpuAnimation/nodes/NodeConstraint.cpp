@@ -2,21 +2,12 @@
 #include <osgGpuAnimation/nodes/NodeConstraint.h>
 
 #include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/callbacks/WorldTargets.h>
 #include <osgGpuAnimation/scene/OsgMatrix.h>
 
 namespace osgGpuAnimation
 {
-
-namespace
-{
-
-Error noInstance()
-{
-    return Error{"the crowd has no such instance (any more)"};
-}
-
-} // namespace
 
 NodeConstraint::NodeConstraint(AnimationController* controller, const std::string& name,
                                const osg::Matrixd& fileToSpace, const osg::Matrixd& spaceToWorld,
@@ -28,7 +19,7 @@ NodeConstraint::NodeConstraint(AnimationController* controller, const std::strin
 
 Result<void> NodeConstraint::setTarget(const osg::Vec3d& position)
 {
-    if (!_controller) return noInstance();
+    if (!_controller) return CrowdInstances::noInstance();
     Result<void> taken =
         _controller->constraint(_name).setTarget(toGlm(position * osg::Matrixd::inverse(_fileToSpace)));
     if (taken) _worldTargets->remove(_instance, _name);
@@ -52,24 +43,25 @@ Result<void> NodeConstraint::follow(osg::Node* node, const osg::Vec3d& position)
 
 Result<void> NodeConstraint::setWeight(float weight)
 {
-    return _controller ? _controller->constraint(_name).setWeight(weight) : noInstance();
+    return _controller ? _controller->constraint(_name).setWeight(weight) : CrowdInstances::noInstance();
 }
 
 Result<void> NodeConstraint::setPole(const osg::Vec3d& direction)
 {
-    if (!_controller) return noInstance();
+    if (!_controller) return CrowdInstances::noInstance();
     const osg::Vec3d inFile = osg::Matrixd::transform3x3(direction, osg::Matrixd::inverse(_fileToSpace));
     return _controller->constraint(_name).setPole(toGlm(inFile));
 }
 
 Result<void> NodeConstraint::setTwist(double radians)
 {
-    return _controller ? _controller->constraint(_name).setTwist(static_cast<float>(radians)) : noInstance();
+    return _controller ? _controller->constraint(_name).setTwist(static_cast<float>(radians))
+                       : CrowdInstances::noInstance();
 }
 
 Result<void> NodeConstraint::setRotation(const osg::Quat& rotation)
 {
-    if (!_controller) return noInstance();
+    if (!_controller) return CrowdInstances::noInstance();
     osg::Vec3d translation, scale;
     osg::Quat turn, scaleAxes;
     _fileToSpace.decompose(translation, turn, scale, scaleAxes);
@@ -80,7 +72,7 @@ Result<void> NodeConstraint::setRotation(const osg::Quat& rotation)
 
 Result<void> NodeConstraint::clear()
 {
-    if (!_controller) return noInstance();
+    if (!_controller) return CrowdInstances::noInstance();
     _worldTargets->remove(_instance, _name);
     return _controller->constraint(_name).clear();
 }

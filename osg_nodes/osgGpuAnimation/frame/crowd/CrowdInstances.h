@@ -101,6 +101,8 @@ public:
     std::size_t size() const { return _rootMatrices.size(); }
     static constexpr std::size_t none = ~std::size_t(0);
     std::size_t indexOf(Handle handle) const; ///< none: no such instance
+    /// The error of a handle that indexOf() does not know.
+    static Error noInstance() { return Error{"the crowd has no such instance (any more)"}; }
     Handle handleOf(std::size_t index) const { return _handles[index]; }
 
     /// clipBounds: the box of an instance in the rest pose, then one per clip, in the character's space. mixBounds: for

@@ -11,8 +11,7 @@ Result<void> CrowdDetail::setAnimationSet(AnimatedCrowd& crowd, std::shared_ptr<
     if (crowd.getNumInstances() > 0 || crowd.getAnimationSet().paletteSize() > 0)
         return Error{"a crowd that has a set keeps it"};
     if (!set) return Error{"a crowd needs a set"};
-    crowd._instances->setSet(set);
-    crowd._meshes.takeSet(std::move(set));
+    crowd._instances->setSet(std::move(set));
     crowd.computeBounds();
     crowd.dirtyBound();
     return crowd._meshes.setPixelError(crowd._meshes.getPixelError());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Draws a SkinnedGeometry (DRAW_SKINNED), or a mesh that does not move, with the inputs of character.frag. DRAW_...: see
 // ShaderKey in looks/shading/ShaderPermutations.h. POSE_COLORED: 1: the mesh has colours; 2: only its morph targets have
-// colours. Included above: color.glsl.
+// colours. HOOK_...: a host's function is linked, see looks/ShaderHook.h. Included above: color.glsl.
 #pragma import_defines(POSE_COLORED, POSE_INSTANCED, MATERIAL_PBR, MATERIAL_TANGENTS, MATERIAL_MORE_COORDINATES)
 #pragma import_defines(MATERIAL_TEXTURE_TRANSFORM)
 
@@ -10,6 +10,12 @@ void osgGpuAnimationSkinTangent(inout vec4 vertex, inout vec3 normal, inout vec4
 vec4 osgGpuAnimationTint();
 void osgGpuAnimationMorphColor(inout vec4 color);
 void osgGpuAnimationMorphTextureCoordinate(inout vec2 coordinate);
+#ifdef HOOK_EYE_VERTEX
+void hostEyeVertex(inout vec4 vertex, inout vec3 normal);
+#endif
+#ifdef HOOK_CLIP_VERTEX
+void hostClipVertex(inout vec4 position, vec4 vertex);
+#endif
 
 out vec3 viewPosition;
 out vec3 viewNormal;
@@ -108,11 +114,23 @@ void main()
 #endif
     if (dot(viewTangent.xyz, viewTangent.xyz) > 0.0) viewTangent.xyz = normalize(viewTangent.xyz);
 #endif
+#ifdef HOOK_EYE_VERTEX
+    vec4 eyeVertex = vec4(viewPosition, 1.0);
+    hostEyeVertex(eyeVertex, viewNormal);
+    viewPosition = eyeVertex.xyz / eyeVertex.w;
+#endif
 #if DRAW_COLOR || DRAW_ALPHA
     passSurface();
 #endif
 #if DRAW_CLIP_PLANES && defined(GL_ARB_compatibility)
     gl_ClipVertex = vec4(viewPosition, 1.0);
 #endif
+#ifdef HOOK_EYE_VERTEX
+    gl_Position = gl_ProjectionMatrix * eyeVertex;
+#else
     gl_Position = gl_ModelViewProjectionMatrix * vertex;
+#endif
+#ifdef HOOK_CLIP_VERTEX
+    hostClipVertex(gl_Position, vec4(viewPosition, 1.0));
+#endif
 }

@@ -8,8 +8,11 @@
 // colour. Attributes are bound to the locations of layout.glsl; SkinnedGeometry sets the uniforms when it draws.
 //
 // OSG's shader defines (StateSet::setDefine, see applySkinDefines) remove parts that a mesh does not need, since some
-// drivers (llvmpipe) run both sides of every branch. Without the defines the uniforms decide.
-#pragma import_defines(POSE_INFLUENCES, POSE_NO_MORPHS, POSE_INSTANCED, POSE_PLACED)
+// drivers (llvmpipe) run both sides of every branch. Without the defines the uniforms decide. SkinnedGeometry defines
+// POSE_SKINNED: without it, so for all other meshes, the functions change nothing.
+#pragma import_defines(POSE_SKINNED, POSE_INFLUENCES, POSE_NO_MORPHS, POSE_INSTANCED, POSE_PLACED)
+
+#ifdef POSE_SKINNED
 
 uniform samplerBuffer posePalette; // entry e of instance i: rows at texel (e * poseStride + i) * 3
 uniform int poseStride;
@@ -169,3 +172,28 @@ void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal)
     vec4 tangent = vec4(0.0);
     osgGpuAnimationSkinTangent(vertex, normal, tangent);
 }
+
+#else
+
+vec4 osgGpuAnimationTint()
+{
+    return vec4(1.0);
+}
+
+void osgGpuAnimationMorphColor(inout vec4 color)
+{
+}
+
+void osgGpuAnimationMorphTextureCoordinate(inout vec2 coordinate)
+{
+}
+
+void osgGpuAnimationSkinTangent(inout vec4 vertex, inout vec3 normal, inout vec4 tangent)
+{
+}
+
+void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal)
+{
+}
+
+#endif

@@ -48,6 +48,7 @@
 #include <osgGpuAnimation/looks/CharacterProgram.h>
 #include <osgGpuAnimation/looks/Environment.h>
 #include <osgGpuAnimation/looks/PbrMaterial.h>
+#include <osgGpuAnimation/looks/ShaderHook.h>
 #include <osgGpuAnimation/math/AffineMatrix.h>
 #include <osgGpuAnimation/math/Box.h>
 #include <osgGpuAnimation/math/Hermite.h>

@@ -78,6 +78,7 @@ GpuPoseEvaluator::GpuPoseEvaluator(const gltf::ImportedModel& model, osg::ref_pt
     binding->set(_model.set, 0, 0);
     _stateSet->setAttribute(binding);
     _stateSet->setAttributeAndModes(captureProgram());
+    _stateSet->setDefine("POSE_SKINNED"); // as SkinnedGeometry::meshState()
     for (const gltf::ImportedPrimitive& primitive : _model.primitives)
         _points.push_back(asPoints(primitive.geometry));
 }

@@ -12,6 +12,8 @@
 #include <osgGpuAnimation/looks/shading/ShaderPermutations.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
+#include <osg/Fog>
+#include <osg/LightSource>
 #include <osgFX/AnisotropicLighting>
 #include <osgFX/Cartoon>
 #include <osgFX/Outline>
@@ -72,6 +74,34 @@ program->addShader(new osg::Shader(osg::Shader::FRAGMENT, R"(#version 140
         vec3 emission, metallicRoughnessOcclusion, normal;
         osgGpuAnimationMaterial(baseColor, emission, metallicRoughnessOcclusion, normal);
         color = vec4(sqrt(emission + baseColor.rgb * (0.3 + 0.7 * max(normal.z, 0.0))), baseColor.a);
+    })"));
+bindSkinAttributes(*program);
+    // clang-format on
+    return program;
+}
+
+// The third program there, verbatim.
+osg::ref_ptr<osg::Program> makeKitsLight()
+{
+    // clang-format off
+osg::ref_ptr<osg::Program> program = new osg::Program;
+program->addShader(skinShader());
+program->addShader(surfaceVertexShader());
+program->addShader(lightShader());                       // contains materialShader()
+program->addShader(new osg::Shader(osg::Shader::FRAGMENT, R"(#version 140
+    void osgGpuAnimationMaterial(out vec4 baseColor, out vec3 emission, out vec3 metallicRoughnessOcclusion,
+                                 out vec3 normal);
+    vec3 osgGpuAnimationLight(vec3 baseColor, vec3 emission, vec3 metallicRoughnessOcclusion, vec3 normal);
+    vec3 osgGpuAnimationDisplay(vec3 color);
+    vec3 osgGpuAnimationFog(vec3 color);
+    out vec4 color;
+    void main()
+    {
+        vec4 baseColor;
+        vec3 emission, metallicRoughnessOcclusion, normal;
+        osgGpuAnimationMaterial(baseColor, emission, metallicRoughnessOcclusion, normal);
+        vec3 light = osgGpuAnimationLight(baseColor.rgb, emission, metallicRoughnessOcclusion, normal);
+        color = vec4(osgGpuAnimationFog(osgGpuAnimationDisplay(light)), baseColor.a);
     })"));
 bindSkinAttributes(*program);
     // clang-format on
@@ -163,6 +193,50 @@ TEST_F(ReadmeShadersGLTest, aProgramMayReadTheMaterial)
     EXPECT_NO_GL_ERROR();
     EXPECT_NEAR(found.r(), 0.5f, 0.02f);
     EXPECT_NEAR(found.g(), 0.6f, 0.02f);
+}
+
+// Two lights, of which one has a position, and fog: what the kit's own program draws.
+TEST_F(ReadmeShadersGLTest, aProgramMayUseTheKitsLight)
+{
+    std::vector<osg::ref_ptr<osg::Image>> pictures;
+    for (const bool isOurs : {true, false})
+    {
+        const osg::ref_ptr<osg::Group> scene = new osg::Group;
+        osg::StateSet& above = *scene->getOrCreateStateSet();
+        for (const int number : {0, 1})
+        {
+            const osg::ref_ptr<osg::LightSource> source = new osg::LightSource;
+            source->getLight()->setLightNum(number);
+            source->getLight()->setPosition(osg::Vec4(1 - 3 * number, -2, 2, static_cast<float>(number)));
+            source->getLight()->setDiffuse(osg::Vec4(0.8f, 0.6f, number, 1));
+            scene->addChild(source);
+            above.setMode(GL_LIGHT0 + static_cast<unsigned int>(number), osg::StateAttribute::ON);
+        }
+        const osg::ref_ptr<osg::Fog> fog = new osg::Fog;
+        fog->setMode(osg::Fog::EXP);
+        fog->setDensity(0.05f);
+        fog->setColor(osg::Vec4(0.2f, 0.3f, 0.9f, 1));
+        above.setAttributeAndModes(fog);
+        const osg::ref_ptr<AnimatedCharacter> panel = makePanelCharacter();
+        scene->addChild(panel);
+        osg::StateSet& state = *static_cast<osg::Geometry&>(*panel->getChild(0)).getStateSet();
+        PbrMaterial material;
+        material.baseColor.set(0.5f, 0.4f, 0.3f, 1.0f);
+        material.emissive.set(0.0f, 0.1f, 0.0f);
+        material.metallic = 0.3f;
+        applyPbrMaterial(state, material);
+        if (!isOurs)
+        {
+            state.setAttributeAndModes(makeKitsLight());
+            state.setDefine("DRAW_LIGHTS", "3");
+            state.setDefine("DRAW_POINT_LIGHTS", "2");
+            state.setDefine("DRAW_FOG", "2");
+        }
+        pictures.push_back(pictureOf(scene));
+    }
+    EXPECT_NO_GL_ERROR();
+    EXPECT_EQ(Picture::pixelsDifferent(*pictures[0], *pictures[1], 0.005f), 0);
+    EXPECT_GT(Picture::pixelsDrawn(*pictures[1]), 200);
 }
 
 TEST_F(ReadmeShadersGLTest, aProgramFromAboveThatDoesNotSkinIsNotTaken)

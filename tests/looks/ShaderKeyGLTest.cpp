@@ -157,6 +157,8 @@ INSTANTIATE_TEST_SUITE_P(
 // A key that differs in one member has a program of its own, with other definitions; the same key has the same one.
 TEST(ShaderKeyTest, everyMemberMakesAnotherProgram)
 {
+    static const osg::ref_ptr<osg::Shader> vertexHook = new osg::Shader(osg::Shader::VERTEX),
+                                           fragmentHook = new osg::Shader(osg::Shader::FRAGMENT);
     void (*const changes[])(ShaderKey&) = {
         [](ShaderKey&) {},
         [](ShaderKey& key) { key.isDepthOnly = true; },
@@ -178,6 +180,11 @@ TEST(ShaderKeyTest, everyMemberMakesAnotherProgram)
         [](ShaderKey& key) { key.fog = ShaderKey::Fog::Linear; },
         [](ShaderKey& key) { key.fog = ShaderKey::Fog::Exp; },
         [](ShaderKey& key) { key.fog = ShaderKey::Fog::Exp2; },
+        [](ShaderKey& key) { key.hooks[0] = vertexHook; },
+        [](ShaderKey& key) { key.hooks[1] = vertexHook; },
+        [](ShaderKey& key) { key.hooks[2] = fragmentHook; },
+        [](ShaderKey& key) { key.hooks[3] = fragmentHook; },
+        [](ShaderKey& key) { key.hooks[4] = fragmentHook; },
     };
     const osg::ref_ptr<osg::Program> all = characterProgram();
     const auto& permutations = static_cast<const ShaderPermutations&>(*all);
@@ -195,6 +202,12 @@ TEST(ShaderKeyTest, everyMemberMakesAnotherProgram)
         EXPECT_EQ(programs.size(), std::size(changes));
         EXPECT_EQ(definitions.size(), std::size(changes));
     }
+}
+
+TEST(ShaderKeyTest, withoutHooksTheShadersHaveNone)
+{
+    EXPECT_EQ(ShaderKey().defines().find("HOOK"), std::string::npos);
+    EXPECT_EQ(ShaderKey().defines().find("GIVEN"), std::string::npos);
 }
 
 TEST(ShaderKeyTest, copiesHaveProgramsOfTheirOwn)

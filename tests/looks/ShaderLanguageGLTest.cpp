@@ -166,9 +166,10 @@ protected:
             i += 2;
             for (const char* name : {"POSE_NO_MORPHS", "POSE_PLACED", "POSE_TINTED"})
                 if (row[i++] != 0) defines[name] = "1";
+            if (!defines.empty()) defines["POSE_SKINNED"] = "1"; // without it: above a mesh that is not skinned
             link(*permutations.variant(key), defines);
         }
-        link(*captureProgram(), {});
+        link(*captureProgram(), {{"POSE_SKINNED", "1"}});
     }
 
     /// As osggpuanim composes it.

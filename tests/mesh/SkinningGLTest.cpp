@@ -125,6 +125,7 @@ protected:
         stateSet->setAttributeAndModes(captureProgram());
         if (GetParam().hasDefines) applySkinDefines(*stateSet, mesh.getInfluenceCount(), GetParam().morph >= 0);
         state().pushStateSet(stateSet);
+        state().pushStateSet(mesh.meshState());
         state().apply();
 
         const osg::GLExtensions* gl = state().get<osg::GLExtensions>();
@@ -142,7 +143,7 @@ protected:
         gl->glGetBufferSubData(GL_TRANSFORM_FEEDBACK_BUFFER, 0, bytes, vertices.data());
         gl->glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
         gl->glDeleteBuffers(1, &buffer);
-        state().popStateSet();
+        state().popAllStateSets();
         state().apply();
         return vertices;
     }

@@ -186,6 +186,13 @@ PalettePlace PosePipeline::place(const AnimationSet& set, std::size_t slot, std:
     return known->second.palettes[slot]->place(instance);
 }
 
+AffineMatrix PosePipeline::rootMatrix(const AnimationSet& set, std::size_t slot, std::size_t instance) const
+{
+    const auto known = _parts->sets.find(&set);
+    if (known == _parts->sets.end() || slot >= known->second.palettes.size()) return {};
+    return known->second.palettes[slot]->rootMatrix(instance);
+}
+
 std::vector<AffineMatrix> PosePipeline::readPalette(osg::State& state, const AnimationSet& set, std::size_t slot,
                                                     std::size_t instance) const
 {

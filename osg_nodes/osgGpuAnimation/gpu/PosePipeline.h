@@ -76,6 +76,9 @@ public:
     /// The palette of an instance of the last batch of this set and slot; its texture is 0 if there is none.
     PalettePlace place(const AnimationSet& set, std::size_t slot, std::size_t instance) const;
 
+    /// The root matrix of an instance of the last batch of this set and slot; the identity if there is none.
+    AffineMatrix rootMatrix(const AnimationSet& set, std::size_t slot, std::size_t instance) const;
+
     /// Reads the palette of an instance: set.paletteSize() entries, or none without a palette. It waits for the GPU:
     /// for tools and tests, not for frames.
     std::vector<AffineMatrix> readPalette(osg::State& state, const AnimationSet& set, std::size_t slot,

@@ -7,6 +7,7 @@
 #include <ShaderSources.h>
 
 #include <string>
+#include <utility>
 
 namespace osgGpuAnimation
 {
@@ -29,11 +30,30 @@ osg::ref_ptr<osg::Shader> makeSurfaceVertexShader()
     return new osg::Shader(osg::Shader::VERTEX, text);
 }
 
+// The kit's own program gets the colours of the applied osg::Material instead.
+constexpr const char* materialColors = "#define materialDiffuse baseColorFactor\n"
+                                       "#define materialEmission emissiveFactor\n";
+
 osg::ref_ptr<osg::Shader> makeMaterialShader()
 {
-    // The kit's own program gets the colours of the applied osg::Material instead.
-    const std::string colors = "#define materialDiffuse baseColorFactor\n#define materialEmission emissiveFactor\n";
-    return new osg::Shader(osg::Shader::FRAGMENT, "#version 140\n" + colors + shaders::material_glsl);
+    return new osg::Shader(osg::Shader::FRAGMENT,
+                           std::string("#version 140\n") + materialColors + shaders::material_glsl);
+}
+
+osg::ref_ptr<osg::Shader> makeLightShader()
+{
+    constexpr std::pair<const char*, int> modes[] = {
+        {"DRAW_LIGHTS", 1},        {"DRAW_POINT_LIGHTS", 0}, {"DRAW_PUNCTUAL_LIGHTS", 0},
+        {"DRAW_SPECULAR", 1},      {"DRAW_SHADOW_MAPS", 0},  {"DRAW_SHADOW_BIAS", 0},
+        {"DRAW_SHADOW_SPLITS", 0}, {"DRAW_FOG", 0},          {"DRAW_ENCODED", 1}};
+    std::string text = std::string("#version 140\n") + materialColors + "#define GIVEN_MATERIAL\n";
+    for (const auto& [name, value] : modes)
+        text += std::string("#pragma import_defines(") + name + ")\n#ifndef " + name + "\n#define " + name + " " +
+                std::to_string(value) + "\n#endif\n";
+    for (const char* part : {shaders::color_glsl, shaders::material_glsl, shaders::pbr_glsl, shaders::environment_glsl,
+                             shaders::light_glsl, shaders::linked_light_glsl})
+        text += part;
+    return new osg::Shader(osg::Shader::FRAGMENT, text);
 }
 
 osg::ref_ptr<osg::Program> makeCharacterProgram()
@@ -78,6 +98,12 @@ osg::ref_ptr<osg::Shader> materialShader()
 {
     static SharedObject<osg::Shader> shared;
     return shared.get(makeMaterialShader);
+}
+
+osg::ref_ptr<osg::Shader> lightShader()
+{
+    static SharedObject<osg::Shader> shared;
+    return shared.get(makeLightShader);
 }
 
 void bindSkinAttributes(osg::Program& program)

@@ -8,7 +8,7 @@ namespace osgGpuAnimation
 {
 
 /// The program that draws SkinnedGeometry: skin.glsl, character.vert and character.frag, in permutations by the modes
-/// of the state (ShaderPermutations). All users share one object.
+/// of the state (ShaderPermutations). All users share one object. A ShaderHook above adds functions of the host's.
 ///
 /// It reproduces the fixed pipeline: OSG's enabled lights with attenuation and spots, osg::LightModel's ambient colour,
 /// osg::Material (diffuse times vertex colour is the base colour, lit or not), fog, clip planes, the texture of unit 0
@@ -31,14 +31,36 @@ void applySurfaceProgram(osg::StateSet& stateSet, bool colored);
 ///
 ///     void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal);
 ///
-/// Such a program also needs bindSkinAttributes().
+/// Such a program also needs bindSkinAttributes(). Meshes that are no SkinnedGeometry stay as they are, so that the
+/// program may be set above them, too. Set above characters with OVERRIDE it replaces characterProgram(). An attribute
+/// of the type PROGRAM that is no osg::Program with this shader does so if its StateSet has the shader define
+/// POSE_SKINNING_PROGRAM.
 osg::ref_ptr<osg::Shader> skinShader();
-/// The vertex shader of characterProgram(), with the inputs of materialShader(), as a shader object for another program
-/// of characters. Such a program also needs skinShader() and bindSkinAttributes().
+/// The vertex shader of characterProgram() as a shader object for another program of characters. Such a program also
+/// needs skinShader() and bindSkinAttributes(). It writes, for fragment shaders:
+///
+///     in vec3 viewPosition;      // in eye space
+///     in vec3 viewNormal;        // in eye space, of any length; 0: unknown
+///     in vec4 vertexColor;       // with the shader defines POSE_COLORED or POSE_TINTED
+///     in vec2 textureCoordinate; // of the base colour
 osg::ref_ptr<osg::Shader> surfaceVertexShader();
 /// material.glsl as a fragment shader object for another program, whose fragment shader declares and calls
-/// osgGpuAnimationMaterial().
+/// osgGpuAnimationMaterial(). It reads the inputs that surfaceVertexShader() writes.
 osg::ref_ptr<osg::Shader> materialShader();
+/// All of materialShader(), and the kit's light (light.glsl) as functions for another program, which links one of the
+/// two:
+///
+///     vec3 osgGpuAnimationLight(vec3 baseColor, vec3 emission, vec3 metallicRoughnessOcclusion, vec3 normal);
+///     vec3 osgGpuAnimationDisplay(vec3 color); // tone mapping, and encoding for the display
+///     vec3 osgGpuAnimationFog(vec3 color);
+///
+/// The first gives the light that a surface at viewPosition sends to the eye: with the shader define MATERIAL_PBR of
+/// applyPbrMaterial() linear radiance, else the colour of the fixed pipeline. A permutation of the kit's own program
+/// reads the modes of the state; another program has shader defines for them: DRAW_LIGHTS, a bit for each GL_LIGHTi (1
+/// if not defined), DRAW_POINT_LIGHTS, those with a position, and DRAW_SHADOW_MAPS, a bit for each texture unit, 1 to
+/// 7, with a map of osgShadow, DRAW_FOG, 1 to 3 for LINEAR, EXP and EXP2, DRAW_ENCODED, 0 with GL_FRAMEBUFFER_SRGB (all
+/// 0, 0, 0 and 1 if not defined).
+osg::ref_ptr<osg::Shader> lightShader();
 /// Binds the attributes of the two vertex shaders to the locations of layout.glsl.
 void bindSkinAttributes(osg::Program& program);
 

@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/mesh/PosedMeshSource.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 
+#include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/looks/shading/Mipmaps.h>
 #include <osgGpuAnimation/mesh/draw/InstancedDraw.h>
@@ -52,19 +53,22 @@ int influencesUsed(const osg::Vec4Array& weights)
     return used;
 }
 
-osg::ref_ptr<osg::StateSet> makeColoredState(const char* colors)
+osg::ref_ptr<osg::StateSet> makeMeshState(SkinnedGeometry::Colors colors)
 {
     osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
-    state->setDefine("POSE_COLORED", colors);
+    state->setDefine("POSE_SKINNED");
+    if (colors != SkinnedGeometry::Colors::White)
+        state->setDefine("POSE_COLORED", colors == SkinnedGeometry::Colors::Array ? "1" : "2");
     return state;
 }
 
-/// The shader define for the colours; null without colours.
-osg::StateSet* coloredState(SkinnedGeometry::Colors colors)
+void reportRestPose(const SkinnedGeometry& mesh)
 {
-    static const osg::ref_ptr<osg::StateSet> ofArray = makeColoredState("1"), ofTargets = makeColoredState("2");
-    if (colors == SkinnedGeometry::Colors::White) return nullptr;
-    return colors == SkinnedGeometry::Colors::Array ? ofArray.get() : ofTargets.get();
+    static std::atomic<bool> isReported{false};
+    if (isReported.exchange(true)) return;
+    OSG_WARN << "osgGpuAnimation: the program of mesh \"" << mesh.getName()
+             << "\" does not skin, so it shows the rest pose; see \"Inside a host\" in osg_nodes/doc/shading.md"
+             << std::endl;
 }
 
 /// The nearest source of posed meshes on the visitor's path, or null.
@@ -114,13 +118,25 @@ void SkinnedGeometry::accept(osg::NodeVisitor& visitor)
     const MeshDrawScope* scope = cullVisitor ? MeshDrawScope::current() : nullptr;
     if (scope && posedMeshSource(visitor) == &scope->source()) return scope->draw(*this);
     std::optional<BoxNearFar> boxes;
-    osg::StateSet* colored = cullVisitor ? coloredState(getColors()) : nullptr;
-    if (cullVisitor) boxes.emplace(*cullVisitor);
-    if (colored) cullVisitor->pushStateSet(colored);
+    if (cullVisitor)
+    {
+        boxes.emplace(*cullVisitor);
+        cullVisitor->pushStateSet(meshState());
+    }
     visitor.pushOntoNodePath(this);
     visitor.apply(static_cast<osg::Drawable&>(*this));
     visitor.popFromNodePath();
-    if (colored) cullVisitor->popStateSet();
+    if (cullVisitor) cullVisitor->popStateSet();
+}
+
+osg::StateSet* SkinnedGeometry::meshState() const
+{
+    static const osg::ref_ptr<osg::StateSet> white = makeMeshState(Colors::White),
+                                             ofArray = makeMeshState(Colors::Array),
+                                             ofTargets = makeMeshState(Colors::Targets);
+    const Colors colors = getColors();
+    if (colors == Colors::White) return white;
+    return colors == Colors::Array ? ofArray : ofTargets;
 }
 
 osg::BoundingBox SkinnedGeometry::computeBoundingBox() const
@@ -130,13 +146,11 @@ osg::BoundingBox SkinnedGeometry::computeBoundingBox() const
 
 void SkinnedGeometry::addTo(osgUtil::CullVisitor& visitor, osg::RefMatrix* toEye, float depth)
 {
-    osg::StateSet* colored = coloredState(getColors());
-    osg::StateSet* own = getStateSet();
-    for (osg::StateSet* state : {colored, own})
-        if (state) visitor.pushStateSet(state);
+    visitor.pushStateSet(meshState());
+    if (osg::StateSet* own = getStateSet()) visitor.pushStateSet(own);
     visitor.addDrawableAndDepth(this, toEye, depth);
-    for (osg::StateSet* state : {colored, own})
-        if (state) visitor.popStateSet();
+    if (getStateSet()) visitor.popStateSet();
+    visitor.popStateSet();
 }
 
 void SkinnedGeometry::setInfluences(unsigned int influenceSet, osg::Vec4usArray* entries, osg::Vec4Array* weights)
@@ -268,6 +282,24 @@ SkinnedGeometry::Colors SkinnedGeometry::getColors() const
     return isWhite && !areMorphed ? Colors::White : Colors::Array;
 }
 
+/// The palette entry, in the rest pose, that moves most of the mesh.
+AffineMatrix SkinnedGeometry::restMatrix(const AnimationSet& set) const
+{
+    std::vector<AffineMatrix> jointToModel, palette;
+    Pose::jointToModel(set, set.restPose(), AffineMatrix(), jointToModel);
+    Pose::palette(set, set.restPose(), jointToModel, palette);
+    std::vector<double> shares(palette.size() + 1); // at least one
+    for (std::size_t vertex = 0; vertex < getVertexCount(); ++vertex)
+        forEachInfluence(vertex,
+                         [&](std::size_t entry, float weight)
+                         {
+                             if (entry < palette.size()) shares[entry] += double(weight);
+                         });
+    const auto largest = std::max_element(shares.begin(), shares.end());
+    const std::size_t entry = static_cast<std::size_t>(largest - shares.begin());
+    return entry < palette.size() ? palette[entry] : AffineMatrix();
+}
+
 void SkinnedGeometry::drawImplementation(osg::RenderInfo& renderInfo) const
 {
     osg::State& state = *renderInfo.getState();
@@ -277,7 +309,12 @@ void SkinnedGeometry::drawImplementation(osg::RenderInfo& renderInfo) const
     const PosePipeline* pipeline = PosePipeline::of(state);
     if (!pipeline) return;
     const MeshVertexArrays arrays(state);
-    const InstanceRuns runs(state, *pipeline, *binding);
+    InstanceRuns runs(state, *pipeline, *binding);
+    if (!runs.isSkinned())
+    {
+        reportRestPose(*this);
+        runs.moveAsOnePiece(restMatrix(*binding->getAnimationSet()));
+    }
     drawInstances(renderInfo, *binding, runs);
 }
 

@@ -95,6 +95,9 @@ public:
         Targets, ///< white plus morph targets
     };
     Colors getColors() const; ///< from the colour array and the morph targets
+    /// The shader defines of every draw of this mesh, with its StateSet's: POSE_SKINNED and, with colours,
+    /// POSE_COLORED.
+    osg::StateSet* meshState() const;
 
     /// The number of elements of the vertex array; 0 without one.
     std::size_t getVertexCount() const { return getVertexArray() ? getVertexArray()->getNumElements() : 0; }
@@ -128,6 +131,7 @@ private:
     void drawInstances(osg::RenderInfo& renderInfo, const PaletteBinding& binding, const InstanceRuns& runs) const;
     void drawPrimitives(osg::State& state, int count, int level) const;
     void bindPalette(osg::State& state, const PalettePlace& place) const;
+    AffineMatrix restMatrix(const AnimationSet& set) const;
     template <typename Move>
     void pose(const osg::Array* bind, osg::ref_ptr<osg::Vec3Array> MorphTarget::*deltas,
               const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& out, Move move) const;

@@ -135,14 +135,14 @@ public:
         DeletionLists::make(state);
         if (pipeline->place(*_set, 0, 0).texture == 0 && !pipeline->evaluate(state, _batch, 0)) return;
         const unsigned int stackSize = state.getStateSetStackSize();
-        const osg::ref_ptr<osg::StateSet> view = viewState();
+        const osg::ref_ptr<osg::StateSet> view = viewState(), frame = frameState();
         for (const StatedMesh& each : _meshes)
         {
-            const osg::ref_ptr<osg::StateSet> frame = frameState(*each.mesh);
             state.pushStateSet(view);
             for (const osg::ref_ptr<osg::StateSet>& stateSet : each.stateSets)
                 state.pushStateSet(stateSet);
             state.pushStateSet(frame);
+            state.pushStateSet(each.mesh->meshState());
             state.apply();
             each.mesh->draw(renderInfo);
             state.popStateSetStackToSize(stackSize);
@@ -160,8 +160,8 @@ protected:
     ~FirstDraw() override = default;
 
 private:
-    /// As of PoseFrame and of the mesh in a cull traversal.
-    osg::ref_ptr<osg::StateSet> frameState(const SkinnedGeometry& mesh) const
+    /// As of PoseFrame in a cull traversal.
+    osg::ref_ptr<osg::StateSet> frameState() const
     {
         osg::ref_ptr<osg::StateSet> stateSet = new osg::StateSet;
         osg::ref_ptr<PaletteBinding> binding = new PaletteBinding;
@@ -175,8 +175,6 @@ private:
             binding->set(_set, 0, 0);
         stateSet->setAttribute(binding);
         stateSet->setMode(GL_RASTERIZER_DISCARD, osg::StateAttribute::ON | osg::StateAttribute::OVERRIDE);
-        if (mesh.getColors() != SkinnedGeometry::Colors::White)
-            stateSet->setDefine("POSE_COLORED", mesh.getColors() == SkinnedGeometry::Colors::Array ? "1" : "2");
         return stateSet;
     }
 

@@ -201,6 +201,15 @@ PalettePlace PosePalette::place(std::size_t instance) const
             index * _chunkCapacity + chunk.size};
 }
 
+AffineMatrix PosePalette::rootMatrix(std::size_t instance) const
+{
+    const std::size_t index = instance / _chunkCapacity;
+    if (index >= _chunks.size()) return {};
+    const std::vector<AffineMatrix>& roots = _chunks[index]->uploadedRootMatrices;
+    const std::size_t place = roots.size() == 1 ? 0 : instance % _chunkCapacity;
+    return place < roots.size() ? roots[place] : AffineMatrix();
+}
+
 void PosePalette::invalidate()
 {
     for (const std::unique_ptr<Chunk>& chunk : _chunks)

@@ -56,6 +56,8 @@ public:
 
     /// The texture is 0 if the instance's chunk has not been evaluated.
     PalettePlace place(std::size_t instance) const;
+    /// The instance's root matrix; the identity without one.
+    AffineMatrix rootMatrix(std::size_t instance) const;
     /// Marks all chunks as not evaluated.
     void invalidate();
     /// The texels that the posed keyframes of one instance take.

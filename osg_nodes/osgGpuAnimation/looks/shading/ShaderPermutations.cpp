@@ -14,6 +14,7 @@
 #include <osg/Texture>
 #include <ShaderSources.h>
 
+#include <algorithm>
 #include <array>
 #include <initializer_list>
 #include <string>
@@ -174,6 +175,18 @@ void readLights(const osg::State& state, ShaderKey& surface)
     surface.hasShadowSplits = surface.shadowMaps != 0 && hasUniform(state, "zShadow0");
 }
 
+/// The hooks that the pass calls.
+void readHooks(const osg::State& state, ShaderKey& surface)
+{
+    using Place = ShaderHook::Place;
+    for (const Place place : {Place::EyeVertex, Place::ClipVertex, Place::Material, Place::LitColor, Place::FinalColor})
+    {
+        const bool isOfColor = place == Place::Material || place == Place::LitColor;
+        if (isOfColor && surface.isDepthOnly) continue;
+        surface.hooks[static_cast<std::size_t>(place)] = ShaderHook::applied(state, place);
+    }
+}
+
 osg::Shader* makeShader(osg::Shader::Type type, const std::string& defines, std::initializer_list<const char*> sources)
 {
     std::string text = "#version 140\n" + defines;
@@ -262,6 +275,7 @@ ShaderKey ShaderKey::of(osg::State& state)
     if (surface.isLit) readLights(state, surface);
     if (!surface.isDepthOnly) surface.fog = fogOf(state);
     surface.isEncoded = !state.getLastAppliedMode(GL_FRAMEBUFFER_SRGB);
+    readHooks(state, surface);
     return surface;
 }
 
@@ -269,6 +283,12 @@ std::string ShaderKey::defines() const
 {
     const auto line = [](const char* name, unsigned int value)
     { return std::string("#define ") + name + " " + std::to_string(value) + "\n"; };
+    static constexpr std::array<const char*, ShaderHook::placeCount> hookDefines = {
+        "#define HOOK_EYE_VERTEX\n", "#define HOOK_CLIP_VERTEX\n", "#define HOOK_MATERIAL\n#define GIVEN_MATERIAL\n",
+        "#define HOOK_LIT_COLOR\n", "#define HOOK_FINAL_COLOR\n"};
+    std::string ofHooks;
+    for (std::size_t place = 0; place < hooks.size(); ++place)
+        if (hooks[place]) ofHooks += hookDefines[place];
     return line("DRAW_COLOR", !isDepthOnly) + line("DRAW_ALPHA", isAlphaNeeded) + line("DRAW_LIGHTING", isLit) +
            line("DRAW_FLAT_NORMALS", hasFlatNormals) + line("DRAW_SPECULAR", hasSpecular) +
            line("DRAW_TEXTURE", isTextured) + line("DRAW_TEXTURE_MATRIX", hasTextureMatrix) +
@@ -276,7 +296,7 @@ std::string ShaderKey::defines() const
            line("DRAW_POINT_LIGHTS", pointLights) + line("DRAW_PUNCTUAL_LIGHTS", punctualLights) +
            line("DRAW_SHADOW_MAPS", shadowMaps) + line("DRAW_SHADOW_BIAS", hasShadowBias) +
            line("DRAW_SHADOW_SPLITS", hasShadowSplits) + line("DRAW_ENCODED", isEncoded) +
-           line("DRAW_FOG", static_cast<unsigned int>(fog));
+           line("DRAW_FOG", static_cast<unsigned int>(fog)) + ofHooks;
 }
 
 bool isWhiteTexture(const osg::StateAttribute* texture)
@@ -309,31 +329,42 @@ osg::ref_ptr<osg::Program> ShaderPermutations::variant(const ShaderKey& surface)
     program->addShader(makeShader(osg::Shader::VERTEX, defines, {shaders::color_glsl, shaders::character_vert}));
     program->addShader(makeShader(osg::Shader::FRAGMENT, defines,
                                   {shaders::color_glsl, shaders::material_glsl, shaders::pbr_glsl,
-                                   shaders::environment_glsl, shaders::character_frag}));
+                                   shaders::environment_glsl, shaders::light_glsl, shaders::character_frag}));
+    for (osg::Shader* hook : surface.hooks)
+        if (hook) program->addShader(hook);
     return program;
 }
 
-bool ShaderPermutations::sharesSkin(const osg::Program& other) const
+bool ShaderPermutations::skins(const osg::StateAttribute* program, const osg::StateSet& stateSet) const
 {
-    for (unsigned int i = 0; i < other.getNumShaders(); ++i)
-        if (other.getShader(i) == _skin) return true;
-    return false;
+    const auto* known = dynamic_cast<const osg::Program*>(program);
+    for (unsigned int i = 0; known && i < known->getNumShaders(); ++i)
+        if (known->getShader(i) == _skin) return true;
+    const auto found = stateSet.getDefineList().find(skinningDefine);
+    return found != stateSet.getDefineList().end() && (found->second.second & osg::StateAttribute::ON);
 }
 
-/// The outermost overriding program that links skin.glsl, or null.
-const osg::Program* ShaderPermutations::overriding(osg::State& state) const
+/// The program from above that replaces this one, or null: OSG's rule of OVERRIDE and PROTECTED among those that skin.
+const osg::StateAttribute* ShaderPermutations::overriding(osg::State& state) const
 {
-    for (const auto& [attribute, value] : state.getAttributeVec(this))
+    const osg::State::AttributeVec& above = state.getAttributeVec(this);
+    const auto overrides = [](const auto& each) { return (each.second & osg::StateAttribute::OVERRIDE) != 0; };
+    if (std::none_of(above.begin(), above.end(), overrides)) return nullptr;
+    const osg::StateSet::RefAttributePair* winner = nullptr;
+    for (const osg::StateSet* stateSet : state.getStateSetStack())
     {
-        const auto* other = dynamic_cast<const osg::Program*>(attribute);
-        if ((value & osg::StateAttribute::OVERRIDE) && other && other != this && sharesSkin(*other)) return other;
+        const osg::StateSet::RefAttributePair* each =
+            stateSet ? stateSet->getAttributePair(osg::StateAttribute::PROGRAM) : nullptr;
+        if (!each || each->first == this || !skins(each->first, *stateSet)) continue;
+        if (winner && overrides(*winner) && !(each->second & osg::StateAttribute::PROTECTED)) continue;
+        winner = each;
     }
-    return nullptr;
+    return winner && overrides(*winner) ? winner->first.get() : nullptr;
 }
 
 void ShaderPermutations::apply(osg::State& state) const
 {
-    if (const osg::Program* other = overriding(state))
+    if (const osg::StateAttribute* other = overriding(state))
         other->apply(state);
     else
     {

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/looks/ShaderHook.h>
+
 #include <osg/observer_ptr>
 #include <osg/Program>
 #include <osg/State>
 #include <osg/Texture2D>
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <mutex>
@@ -44,18 +47,20 @@ struct ShaderKey
     bool hasShadowSplits = false;    ///< osgShadow::ParallelSplitShadowMap: its uniform zShadow0 exists
     bool isEncoded = true;           ///< no GL_FRAMEBUFFER_SRGB: the shader encodes linear light for the display
     Fog fog = Fog::None;             ///< GL_FOG, and the osg::Fog's mode
+    /// By ShaderHook::Place; null: no hook.
+    std::array<osg::Shader*, ShaderHook::placeCount> hooks{};
 
     /// The key of the present state. Call it while attributes are applied, after the modes.
     static ShaderKey of(osg::State& state);
 
-    /// GLSL definitions of DRAW_COLOR, DRAW_ALPHA, DRAW_LIGHTING and so on, as numbers.
+    /// GLSL definitions of DRAW_COLOR, DRAW_ALPHA, DRAW_LIGHTING and so on, as numbers, and of HOOK_... for each hook.
     std::string defines() const;
 
     auto key() const
     {
         return std::tie(isDepthOnly, isAlphaNeeded, isLit, hasFlatNormals, hasSpecular, isTextured, hasTextureMatrix,
                         hasClipPlanes, lights, pointLights, punctualLights, shadowMaps, hasShadowBias, hasShadowSplits,
-                        isEncoded, fog);
+                        isEncoded, fog, hooks);
     }
     bool operator<(const ShaderKey& other) const { return key() < other.key(); }
 };
@@ -87,12 +92,15 @@ private:
     osg::observer_ptr<Object> _object;
 };
 
+/// The shader define of a StateSet whose attribute of the type PROGRAM, of any class, skins: it calls skin.glsl.
+constexpr const char* skinningDefine = "POSE_SKINNING_PROGRAM";
+
 /// The attribute behind characterProgram() and surfaceProgram(): one program per ShaderKey, created on demand. It reads
 /// the state whenever a StateSet with it is applied. Every permutation links the skinning shader and has the attribute
 /// locations of this program. OSG's shader defines add the maps of a material, see shaders/material.glsl.
 ///
 /// Set it PROTECTED, so that overriding programs from above (osgShadow's casting cameras, osgFX) do not draw the bind
-/// pose. An overriding program that links skin.glsl itself is applied instead.
+/// pose. An overriding program that skins is applied instead, see skinningDefine.
 class ShaderPermutations : public osg::Program
 {
 public:
@@ -125,8 +133,8 @@ protected:
     ~ShaderPermutations() override = default;
 
 private:
-    bool sharesSkin(const osg::Program& other) const;
-    const osg::Program* overriding(osg::State& state) const;
+    bool skins(const osg::StateAttribute* program, const osg::StateSet& stateSet) const;
+    const osg::StateAttribute* overriding(osg::State& state) const;
 
     osg::ref_ptr<osg::Shader> _skin;
     mutable std::mutex _mutex; ///< draw threads of several contexts create variants

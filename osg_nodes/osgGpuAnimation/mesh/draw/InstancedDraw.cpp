@@ -2,7 +2,6 @@
 #include <osgGpuAnimation/mesh/draw/InstancedDraw.h>
 
 #include <osgGpuAnimation/gpu/buffers/BufferTexture.h>
-#include <osgGpuAnimation/scene/OsgMatrix.h>
 
 #include <layout.glsl>
 
@@ -153,9 +152,12 @@ void setOutset(osg::State& state, float outset)
 InstanceRuns::InstanceRuns(osg::State& state, const PosePipeline& pipeline, const PaletteBinding& binding)
     : _state(state), _pipeline(pipeline), _binding(binding)
 {
-    if (binding.getPlaced()) findPlaced();
-    if (binding.getSerial() == 0) return;
+    static const unsigned int paletteName = osg::Uniform::getNameID("posePalette");
     const osg::Program::PerContextProgram* program = state.getLastAppliedProgramObject();
+    _isSkinned = program && program->getUniformLocation(paletteName) >= 0;
+    if (binding.getPlaced()) findPlaced();
+    if (!_isSkinned) _view = state.getModelViewMatrix();
+    if (binding.getSerial() == 0) return;
     if (program && program->getAttribLocation("poseInstancePose") == POSE_INSTANCE_POSE_LOCATION)
         _transforms = &InstanceTransformBuffers::of(state).buffer(binding.getSerial(), binding.getInstanceTransforms());
 }
@@ -171,9 +173,9 @@ InstanceRuns::~InstanceRuns()
             gl.glVertexAttribDivisor(location, 0);
         }
     }
-    else if (_binding.getSerial() != 0)
+    else if (!_isSkinned || _binding.getSerial() != 0)
     {
-        _state.applyModelViewMatrix(new osg::RefMatrix);
+        _state.applyModelViewMatrix(new osg::RefMatrix(_view));
         _state.applyModelViewAndProjectionUniformsIfRequired();
     }
 }
@@ -201,8 +203,9 @@ void InstanceRuns::findPlaced()
 
 InstanceRuns::Run InstanceRuns::at(std::size_t first) const
 {
-    if (_binding.getPlaced()) return _placed;
-    return _binding.getSerial() != 0 ? runOfTransforms(first) : runOfBatch(first);
+    Run run = _binding.getPlaced() ? _placed : _binding.getSerial() != 0 ? runOfTransforms(first) : runOfBatch(first);
+    if (!_isSkinned) run.count = std::min<std::size_t>(run.count, 1);
+    return run;
 }
 
 InstanceRuns::Run InstanceRuns::runOfBatch(std::size_t first) const
@@ -227,6 +230,7 @@ InstanceRuns::Run InstanceRuns::runOfTransforms(std::size_t first) const
 
 void InstanceRuns::use(std::size_t first) const
 {
+    if (!_isSkinned) return usePiece(first);
     if (_binding.getPlaced()) usePlaced();
     if (_binding.getSerial() != 0) useTransforms(first);
 }
@@ -262,6 +266,29 @@ void InstanceRuns::useTransforms(std::size_t first) const
         _transforms->bindAttributes(location, 1, sizeof(InstanceTransform), offset, 1);
         offset += BufferTexture::texelBytes;
     }
+}
+
+void InstanceRuns::usePiece(std::size_t first) const
+{
+    std::size_t pose = _binding.getInstance() + first;
+    osg::Matrixd toEye = _view;
+    if (const PlacedInstances* placed = _binding.getPlaced().get())
+    {
+        const auto [ofPose, instance] = placed->drawn[pose];
+        constexpr std::size_t blockSize = SharedBlocks<AffineMatrix>::blockSize;
+        toEye.preMult(toOsg(placed->placements[instance / blockSize]->elements[instance % blockSize]));
+        pose = ofPose;
+    }
+    else if (_binding.getSerial() != 0)
+    {
+        const InstanceTransform& placement = _binding.getInstanceTransforms()[first];
+        toEye = toOsg(placement.toEye);
+        pose = poseOf(placement);
+    }
+    toEye.preMult(toOsg(_pipeline.rootMatrix(*_binding.getAnimationSet(), _binding.getSlot(), pose)));
+    toEye.preMult(_meshToRoots);
+    _state.applyModelViewMatrix(new osg::RefMatrix(toEye));
+    _state.applyModelViewAndProjectionUniformsIfRequired();
 }
 
 bool InstanceRuns::isRefusedBy(const osg::Geometry& mesh)

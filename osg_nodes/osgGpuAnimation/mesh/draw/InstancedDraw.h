@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/gpu/buffers/PosePalette.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/mesh/draw/PaletteBinding.h>
+#include <osgGpuAnimation/scene/OsgMatrix.h>
 
 #include <osg/Geometry>
 #include <osg/PrimitiveSet>
@@ -63,6 +64,12 @@ public:
     InstanceRuns(const InstanceRuns&) = delete;
     InstanceRuns& operator=(const InstanceRuns&) = delete;
 
+    /// False: the applied program does not skin, so it has to draw each instance by itself, see moveAsOnePiece().
+    bool isSkinned() const { return _isSkinned; }
+    /// For a program that does not skin: moves all vertices of an instance by one matrix to the space of its joints'
+    /// roots, from there by the instance's root matrix and placement, all in the model-view matrix.
+    void moveAsOnePiece(const AffineMatrix& meshToRoots) { _meshToRoots = toOsg(meshToRoots); }
+
     /// The longest run that starts with the drawn instance of that number.
     Run at(std::size_t first) const;
     /// Binds the placements before the draw of the run that starts there, after bindPalette(). The mesh's vertex arrays
@@ -78,6 +85,7 @@ private:
     Run runOfTransforms(std::size_t first) const;
     void usePlaced() const;
     void useTransforms(std::size_t first) const;
+    void usePiece(std::size_t first) const;
 
     osg::State& _state;
     const PosePipeline& _pipeline;
@@ -85,6 +93,9 @@ private:
     Run _placed; ///< of instances with shared poses
     PlacedInstanceBuffers::Textures _textures;
     const BufferTexture* _transforms = nullptr; ///< null: one draw per character
+    bool _isSkinned = true;
+    osg::Matrixd _view; ///< the draw's own model-view matrix
+    osg::Matrixd _meshToRoots;
 };
 
 /// Draws `count` instances of the primitives (gl_InstanceID in [0, count)) and ignores their own number of instances.

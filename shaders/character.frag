@@ -41,7 +41,7 @@ void main()
     hostLitColor(color);
 #endif
     color.rgb = shownColor(color.rgb);
-#if DRAW_FOG && defined(GL_ARB_compatibility)
+#if DRAW_FOG
     color.rgb = foggedColor(color.rgb);
 #endif
 #ifdef HOOK_FINAL_COLOR

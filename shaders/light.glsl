@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Lights a surface with OSG's lights, then applies the shadow maps of osgShadow's techniques and fog: with MATERIAL_PBR as
 // glTF's metallic-roughness material in linear light, else the base colour in display space like the fixed pipeline. In a
-// core profile, which has no lights: a headlight. DRAW_...: see ShaderKey in looks/shading/ShaderPermutations.h. To use it
+// core profile without lights: a headlight. DRAW_...: see ShaderKey in looks/shading/ShaderPermutations.h. To use it
 // in another program, see lightShader() in looks/CharacterProgram.h. Included above: color.glsl, material.glsl, pbr.glsl,
 // environment.glsl.
 //
@@ -22,8 +22,47 @@ vec3 givenNormal;
 #define materialSurface() givenSurface
 #define materialNormal() givenNormal
 #define fixedEmission givenEmission
-#else
+#elif defined(GL_ARB_compatibility)
 #define fixedEmission gl_FrontMaterial.emission.rgb
+#else
+#define fixedEmission materialEmission
+#endif
+
+// The state of the fixed pipeline: of GL, or in a core profile by uniforms, see ViewLights.
+#ifdef GL_ARB_compatibility
+#define lightSource gl_LightSource
+#define lightModelAmbient gl_LightModel.ambient
+#define shineColor gl_FrontMaterial.specular
+#define shininess gl_FrontMaterial.shininess
+#define fogColor gl_Fog.color
+#define fogDensity gl_Fog.density
+#define fogEnd gl_Fog.end
+#define fogScale gl_Fog.scale
+#else
+struct LightSource
+{
+    vec4 ambient;
+    vec4 diffuse;
+    vec4 specular;
+    vec4 position; // in eye space, as the direction
+    vec3 spotDirection;
+    float spotExponent;
+    float spotCutoff; // degrees; 180: shines everywhere
+    float spotCosCutoff;
+    float constantAttenuation;
+    float linearAttenuation;
+    float quadraticAttenuation;
+};
+uniform LightSource lightSource[8];
+uniform vec4 lightModelAmbient;
+uniform vec4 materialShine; // the specular colour, the shininess
+uniform vec4 fogColor;
+uniform vec4 fogRange; // density, start, end, 1 / (end - start)
+#define shineColor materialShine
+#define shininess materialShine.a
+#define fogDensity fogRange.x
+#define fogEnd fogRange.z
+#define fogScale fogRange.w
 #endif
 
 #ifdef MATERIAL_PBR
@@ -38,20 +77,20 @@ vec3 surfaceColor(Surface surface, vec3 direct, vec3 ambient, float occlusion)
 }
 #endif
 
-#ifdef GL_ARB_compatibility
+#if defined(GL_ARB_compatibility) || DRAW_LIGHTS
 
 // The direction to the light, and its attenuation (OpenGL 2.1, section 2.14.1).
 vec3 directionTo(int index, out float strength)
 {
-    vec4 position = gl_LightSource[index].position;
+    vec4 position = lightSource[index].position;
     strength = 1.0;
     if ((DRAW_POINT_LIGHTS & (1 << index)) == 0) return normalize(position.xyz);
     vec3 way = position.xyz / position.w - viewPosition;
     float range = length(way);
     vec3 toLight = way / range;
-    strength = 1.0 / (gl_LightSource[index].constantAttenuation + gl_LightSource[index].linearAttenuation * range +
-                      gl_LightSource[index].quadraticAttenuation * range * range);
-    float along = dot(-toLight, normalize(gl_LightSource[index].spotDirection));
+    strength = 1.0 / (lightSource[index].constantAttenuation + lightSource[index].linearAttenuation * range +
+                      lightSource[index].quadraticAttenuation * range * range);
+    float along = dot(-toLight, normalize(lightSource[index].spotDirection));
 #ifdef MATERIAL_PBR
     if ((DRAW_PUNCTUAL_LIGHTS & (1 << index)) != 0)
     {
@@ -62,10 +101,10 @@ vec3 directionTo(int index, out float strength)
         return toLight;
     }
 #endif
-    if (gl_LightSource[index].spotCosCutoff > -1.0)
-        strength *= along < gl_LightSource[index].spotCosCutoff
+    if (lightSource[index].spotCutoff < 180.0) // the cosine is 0 in Mesa for 180 degrees
+        strength *= along < lightSource[index].spotCosCutoff
                         ? 0.0
-                        : pow(max(along, 0.0001), gl_LightSource[index].spotExponent);
+                        : pow(max(along, 0.0001), lightSource[index].spotExponent);
     return toLight;
 }
 
@@ -81,8 +120,8 @@ void addLight(int index, Surface surface, inout Light sum)
 {
     float strength;
     vec3 toLight = directionTo(index, strength);
-    sum.ambient += strength * gl_LightSource[index].ambient.rgb;
-    sum.direct += strength * gl_LightSource[index].diffuse.rgb * reflectedLight(surface, toLight);
+    sum.ambient += strength * lightSource[index].ambient.rgb;
+    sum.direct += strength * lightSource[index].diffuse.rgb * reflectedLight(surface, toLight);
 }
 
 #else
@@ -99,16 +138,18 @@ void addLight(int index, vec3 normal, inout Light sum)
     float strength;
     vec3 toLight = directionTo(index, strength);
     float diffuse = max(dot(normal, toLight), 0.0);
-    sum.ambient += strength * gl_LightSource[index].ambient.rgb;
-    sum.diffuse += strength * diffuse * gl_LightSource[index].diffuse.rgb;
+    sum.ambient += strength * lightSource[index].ambient.rgb;
+    sum.diffuse += strength * diffuse * lightSource[index].diffuse.rgb;
 #if DRAW_SPECULAR
     vec3 halfway = normalize(toLight - normalize(viewPosition));
-    float specular = diffuse > 0.0 ? pow(max(dot(normal, halfway), 0.0), max(gl_FrontMaterial.shininess, 1.0)) : 0.0;
-    sum.specular += strength * specular * gl_LightSource[index].specular.rgb;
+    float specular = diffuse > 0.0 ? pow(max(dot(normal, halfway), 0.0), max(shininess, 1.0)) : 0.0;
+    sum.specular += strength * specular * lightSource[index].specular.rgb;
 #endif
 }
 
 #endif
+
+#if DRAW_SHADOW_MAPS
 
 // The technique generates the unit's texture coordinates from the view position.
 float unshadowed(sampler2DShadow map, int unit)
@@ -162,12 +203,14 @@ vec3 shadowedColor(vec3 color, vec3 colorWithoutLights)
 #endif
 }
 
+#endif
+
 vec3 litColor(vec3 base)
 {
 #ifdef MATERIAL_PBR
     vec3 factors = materialSurface();
     Surface lit = makeSurface(base, factors.x, factors.y, materialNormal());
-    Light sum = Light(gl_LightModel.ambient.rgb, vec3(0.0));
+    Light sum = Light(lightModelAmbient.rgb, vec3(0.0));
 #else
     vec3 lit = materialNormal();
     Light sum = Light(vec3(0.0), vec3(0.0), vec3(0.0));
@@ -202,29 +245,12 @@ vec3 litColor(vec3 base)
 #endif
     return surfaceColor(lit, sum.direct, sum.ambient, factors.z);
 #else
-    vec3 withoutLights = fixedEmission + base * gl_LightModel.ambient.rgb;
-    vec3 color = withoutLights + base * (sum.ambient + sum.diffuse) + gl_FrontMaterial.specular.rgb * sum.specular;
+    vec3 withoutLights = fixedEmission + base * lightModelAmbient.rgb;
+    vec3 color = withoutLights + base * (sum.ambient + sum.diffuse) + shineColor.rgb * sum.specular;
 #if DRAW_SHADOW_MAPS
     color = shadowedColor(color, withoutLights);
 #endif
     return color;
-#endif
-}
-
-vec3 foggedColor(vec3 color)
-{
-    float depth = abs(viewPosition.z);
-#if DRAW_FOG == 1
-    float clear = (gl_Fog.end - depth) * gl_Fog.scale;
-#elif DRAW_FOG == 2
-    float clear = exp(-gl_Fog.density * depth);
-#else
-    float clear = exp(-gl_Fog.density * gl_Fog.density * depth * depth);
-#endif
-#if defined(MATERIAL_PBR) && !DRAW_ENCODED
-    return mix(linearColor(gl_Fog.color.rgb), color, clamp(clear, 0.0, 1.0));
-#else
-    return mix(gl_Fog.color.rgb, color, clamp(clear, 0.0, 1.0));
 #endif
 }
 
@@ -237,11 +263,28 @@ vec3 litColor(vec3 base)
     Surface surface = makeSurface(base, factors.x, factors.y, materialNormal());
     return surfaceColor(surface, 0.8 * reflectedLight(surface, surface.toEye), vec3(0.2), factors.z);
 #else
-    return materialEmission + base * (0.2 + 0.8 * max(dot(materialNormal(), normalize(-viewPosition)), 0.0));
+    return fixedEmission + base * (0.2 + 0.8 * max(dot(materialNormal(), normalize(-viewPosition)), 0.0));
 #endif
 }
 
 #endif
+
+vec3 foggedColor(vec3 color)
+{
+    float depth = abs(viewPosition.z);
+#if DRAW_FOG == 1
+    float clear = (fogEnd - depth) * fogScale;
+#elif DRAW_FOG == 2
+    float clear = exp(-fogDensity * depth);
+#else
+    float clear = exp(-fogDensity * fogDensity * depth * depth);
+#endif
+#if defined(MATERIAL_PBR) && !DRAW_ENCODED
+    return mix(linearColor(fogColor.rgb), color, clamp(clear, 0.0, 1.0));
+#else
+    return mix(fogColor.rgb, color, clamp(clear, 0.0, 1.0));
+#endif
+}
 
 // From linear light to the framebuffer's.
 vec3 shownColor(vec3 color)

@@ -16,7 +16,7 @@ vec3 osgGpuAnimationDisplay(vec3 color)
 
 vec3 osgGpuAnimationFog(vec3 color)
 {
-#if DRAW_FOG && defined(GL_ARB_compatibility)
+#if DRAW_FOG
     return foggedColor(color);
 #else
     return color;

@@ -11,6 +11,7 @@
 #include "gltf/import/Joints.h"
 
 #include <osgGpuAnimation/animation/bounds/TransformBound.h>
+#include <osgGpuAnimation/looks/shading/ViewLights.h>
 #include <osgGpuAnimation/mesh/geometry/MaterialVariants.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 #include <osgGpuAnimation/nodes/CompactedCharacter.h>
@@ -174,6 +175,7 @@ void Importer::makeGraph(const NodeTree& tree, const Joints& joints, const Morph
     const std::string sceneName = tree.scene >= 0 ? elementOf(_model.scenes, tree.scene).name : std::string();
     if (!_options.noRotation) _result.fileToNode.set(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
     osg::ref_ptr<osg::MatrixTransform> still = new osg::MatrixTransform(_result.fileToNode);
+    still->addCullCallback(new ViewLightsCallback);
     _result.root = still;
     if (_result.set)
     {

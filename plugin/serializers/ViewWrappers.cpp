@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "serializers/ValueStream.h"
 
+#include <osgGpuAnimation/looks/ShaderHook.h>
 #include <osgGpuAnimation/looks/shading/PunctualLight.h>
+#include <osgGpuAnimation/looks/shading/ViewLights.h>
 #include <osgGpuAnimation/nodes/studio/Studio.h>
 #include <osgGpuAnimation/nodes/viewing/RaisedHome.h>
 #include <osgGpuAnimation/nodes/viewing/StartView.h>
 
 #include <osg/Notify>
 
-// Lights, studios and first views in OSG's own formats. The cameras themselves are OSG's.
+// Lights, hosts' hooks, studios and first views in OSG's own formats. The cameras themselves are OSG's.
 
 namespace osgGpuAnimation::serializers
 {
@@ -42,7 +44,20 @@ void transferCamera(ValueStream& stream, StartView& start)
     if (stream.hasRead()) start.setCamera(camera);
 }
 
+void transferHook(ValueStream& stream, ShaderHook& hook)
+{
+    ShaderHook::Place place = hook.getPlace();
+    std::string text = hook.getText();
+    stream.limited("the place of a hook", place, ShaderHook::Place::FinalColor).value(text).endLine();
+    if (stream.hasRead()) hook.set(place, text);
+}
+
 osgDB::RegisterWrapperProxy wrappers[] = {
+    {[]() -> osg::Object* { return new ShaderHook; }, "osgGpuAnimation::ShaderHook",
+     "osg::Object osg::StateAttribute osgGpuAnimation::ShaderHook",
+     [](osgDB::ObjectWrapper* wrapper) { addProperty(wrapper, "Hook", &transferHook); }},
+    {[]() -> osg::Object* { return new ViewLightsCallback; }, "osgGpuAnimation::ViewLightsCallback",
+     "osg::Object osg::Callback osgGpuAnimation::ViewLightsCallback", [](osgDB::ObjectWrapper*) {}},
     {[]() -> osg::Object* { return new PunctualLight; }, "osgGpuAnimation::PunctualLight",
      "osgGpuAnimation::ExactNumbers osg::Object osg::StateAttribute osg::Light osgGpuAnimation::PunctualLight",
      [](osgDB::ObjectWrapper* wrapper) { addProperty(wrapper, "Cone", &transferCone); }},

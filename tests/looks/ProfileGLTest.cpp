@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: MIT
 #include "looks/Panel.h"
 #include "support/NotifyLog.h"
-#include "support/TestCharacter.h"
+#include "support/TestCrowd.h"
 #include "support/ViewerGLTest.h"
 
+#include <osgGpuAnimation/looks/CharacterProgram.h>
 #include <osgGpuAnimation/looks/PbrMaterial.h>
+#include <osgGpuAnimation/looks/shading/PunctualLight.h>
+#include <osgGpuAnimation/looks/shading/ViewLights.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
+#include <osg/Fog>
 #include <osg/GLExtensions>
 #include <osg/Image>
 #include <osg/LightModel>
 #include <osg/LightSource>
 #include <osg/Material>
+#include <osg/MatrixTransform>
 
 #include <algorithm>
 #include <string>
@@ -290,7 +295,7 @@ osg::ref_ptr<osg::Node> makeGlowing(bool isPbr, bool isLit)
     return scene;
 }
 
-// The core profile has no lights: such a light from the eye and such a surrounding take their place.
+// Without lights in the core profile, such a light from the eye and such a surrounding take their place.
 TEST_F(ProfileGLTest, aHeadlightTakesThePlaceOfLightsInTheCoreProfile)
 {
     for (const bool isPbr : {false, true})
@@ -307,6 +312,98 @@ TEST_F(ProfileGLTest, aHeadlightTakesThePlaceOfLightsInTheCoreProfile)
         }
         EXPECT_EQ(Picture::pixelsDifferent(*pictures[0], *pictures[1], 2.5f / 255), 0) << isPbr;
     }
+}
+
+osg::Light& addLight(osg::Group& scene, int number, const osg::Vec4& position, const osg::Matrix& place)
+{
+    const osg::ref_ptr<osg::LightSource> source = new osg::LightSource;
+    const osg::ref_ptr<osg::MatrixTransform> transform = new osg::MatrixTransform(place);
+    source->getLight()->setLightNum(number);
+    source->getLight()->setPosition(position);
+    source->getLight()->setAmbient(osg::Vec4(0.1f, 0, 0, 1));
+    source->setStateSetModes(*scene.getOrCreateStateSet(), on);
+    transform->addChild(source);
+    scene.addChild(transform);
+    return *source->getLight();
+}
+
+/// A character, a crowd and a mesh that does not move, under a light from afar, one with a place, a cone of light, a
+/// lamp in physical units and fog.
+osg::ref_ptr<osg::Node> makeLitScene(bool isPbr, osg::Fog::Mode fogMode)
+{
+    const osg::ref_ptr<osg::Group> scene = new osg::Group;
+    addLight(*scene, 0, osg::Vec4(0, -1, 1, 0), osg::Matrix::rotate(0.7, osg::Z_AXIS))
+        .setDiffuse(osg::Vec4(0.4f, 0.3f, 0.2f, 1));
+    osg::Light& bulb = addLight(*scene, 2, osg::Vec4(0, -1.5f, 0, 1), osg::Matrix::translate(-2, 0, -1));
+    bulb.setDiffuse(osg::Vec4(0.2f, 0.9f, 0.3f, 1));
+    bulb.setSpecular(osg::Vec4(1, 1, 1, 1));
+    bulb.setLinearAttenuation(0.4f);
+    osg::Light& cone = addLight(*scene, 3, osg::Vec4(0, 0, 0, 1), osg::Matrix::translate(2, -3, 2));
+    cone.setDirection(osg::Vec3(-0.3f, 1, -0.4f));
+    cone.setSpotCutoff(25);
+    cone.setSpotExponent(8);
+    const osg::ref_ptr<PunctualLight> lamp = new PunctualLight(PunctualLight::Kind::Spot, 5);
+    EXPECT_TRUE(lamp->setIntensity(osg::Vec3(1, 0.2f, 0.9f), 20) && lamp->setCone(10, 30) && lamp->setRange(5));
+    const osg::ref_ptr<osg::LightSource> source = new osg::LightSource;
+    source->setLight(lamp);
+    source->setStateSetModes(*scene->getStateSet(), on);
+    const osg::ref_ptr<osg::MatrixTransform> place =
+        new osg::MatrixTransform(osg::Matrix::rotate(osg::PI_2, osg::X_AXIS) * osg::Matrix::translate(0, -3, -2));
+    place->addChild(source);
+    scene->addChild(place);
+
+    const osg::ref_ptr<AnimatedCharacter> character = makePanelCharacter();
+    const osg::ref_ptr<osg::Node> still = makeBaked(*character);
+    osg::StateSet* const states[] = {character->getChild(0)->getStateSet(),
+                                     still->asGroup()->getChild(0)->getStateSet()};
+    for (osg::StateSet* state : states)
+    {
+        PbrMaterial material;
+        material.metallic = 0.4f;
+        material.emissive.set(0, 0.1f, 0);
+        if (isPbr) applyPbrMaterial(*state, material);
+        auto& shine = static_cast<osg::Material&>(*state->getAttribute(osg::StateAttribute::MATERIAL));
+        shine.setSpecular(osg::Material::FRONT_AND_BACK, osg::Vec4(0.3f, 0.4f, 0.5f, 1));
+        shine.setShininess(osg::Material::FRONT_AND_BACK, 12);
+    }
+    applySurfaceProgram(*states[1], false);
+    states[1]->setTextureMode(0, GL_TEXTURE_2D, on);
+    const osg::ref_ptr<osg::MatrixTransform> right = new osg::MatrixTransform(osg::Matrix::translate(1.5, 0, 1.5));
+    right->addChild(still);
+    right->addCullCallback(new ViewLightsCallback); // as of files
+    scene->addChild(right);
+    character->setMatrix(osg::Matrix::rotate(0.6, osg::Z_AXIS) * osg::Matrix::translate(-2, 0, -2));
+    scene->addChild(character);
+    scene->addChild(makeCrowd(*character, {osg::Matrix::translate(-2, 0, 1), osg::Matrix::translate(1, 0, -2)}));
+
+    const osg::ref_ptr<osg::LightModel> model = new osg::LightModel;
+    model->setAmbientIntensity(osg::Vec4(0.1f, 0.2f, 0.3f, 1));
+    scene->getStateSet()->setAttribute(model);
+    scene->getStateSet()->setMode(GL_LIGHTING, on);
+    const osg::ref_ptr<osg::Fog> fog = new osg::Fog;
+    fog->setMode(fogMode);
+    fog->setDensity(0.04f);
+    fog->setStart(5);
+    fog->setEnd(20);
+    fog->setColor(osg::Vec4(0.6f, 0.5f, 0.9f, 1));
+    scene->getStateSet()->setAttributeAndModes(fog);
+    return scene;
+}
+
+TEST_F(ProfileGLTest, osgsLightsAndFogAreTheSameInTheCoreProfile)
+{
+    for (const bool isPbr : {false, true})
+        for (const osg::Fog::Mode fog : {osg::Fog::LINEAR, osg::Fog::EXP, osg::Fog::EXP2})
+        {
+            osg::ref_ptr<osg::Image> pictures[2];
+            for (const bool isCore : {false, true})
+            {
+                if (!changeTo(isCore ? core : stock)) return;
+                pictures[isCore ? 1 : 0] = pictureOf(makeLitScene(isPbr, fog));
+                EXPECT_GT(picture().pixelsDrawn(), 800);
+            }
+            EXPECT_EQ(Picture::pixelsDifferent(*pictures[0], *pictures[1], 1.5f / 255), 0) << isPbr << ", " << fog;
+        }
 }
 
 TEST_F(ProfileGLTest, colorsAreEncodedByAnSrgbFramebuffer)

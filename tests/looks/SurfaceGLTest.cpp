@@ -75,7 +75,7 @@ void addPointLight(osg::StateSet& state, float spotCutoff)
     osg::ref_ptr<osg::Light> near = light(2, osg::Vec4(1.0f, -2.5f, 1.0f, 1.0f));
     near->setLinearAttenuation(0.3f);
     near->setQuadraticAttenuation(0.05f);
-    near->setDirection(osg::Vec3(0, 1, 0));
+    near->setDirection(osg::Vec3(0, spotCutoff < 180.0f ? 1 : -1, 0)); // a light to all sides has none
     near->setSpotCutoff(spotCutoff);
     if (spotCutoff < 180.0f) near->setSpotExponent(8); // a soft edge
     state.setAttributeAndModes(near);

@@ -8,6 +8,7 @@
 #include <osgGpuAnimation/frame/characters/FirstDraw.h>
 #include <osgGpuAnimation/frame/stage/LodSelection.h>
 #include <osgGpuAnimation/frame/stage/PoseStage.h>
+#include <osgGpuAnimation/looks/shading/ViewLights.h>
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/mesh/geometry/PosedMesh.h>
 #include <osgGpuAnimation/nodes/callbacks/WorldTargets.h>
@@ -314,6 +315,7 @@ void AnimatedCharacter::traverse(osg::NodeVisitor& visitor)
         return;
     }
     const DepthPass pass(*cullVisitor);
+    const ViewLightsScope lights(*cullVisitor);
     PoseStage::draw(*cullVisitor, {*this, *_controller, _axes->rootMatrix, _meshes.getPixelError(), _isDrawnTogether});
 }
 

@@ -10,6 +10,7 @@
 #include <osgGpuAnimation/frame/crowd/SharedPoses.h>
 #include <osgGpuAnimation/frame/stage/LodSelection.h>
 #include <osgGpuAnimation/frame/stage/PoseStage.h>
+#include <osgGpuAnimation/looks/shading/ViewLights.h>
 #include <osgGpuAnimation/mesh/geometry/MaterialVariants.h>
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
@@ -351,6 +352,7 @@ void AnimatedCrowd::traverse(osg::NodeVisitor& visitor)
 void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
 {
     const DepthPass pass(visitor);
+    const ViewLightsScope lights(visitor);
     CrowdView view(visitor);
     static thread_local SeenMembers seen; // keeps its storage from cull to cull
     _instances->findSeen(isCullingActive() ? view.planes() : std::vector<glm::vec4>(), seen);

@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/looks/PbrMaterial.h>
 #include <osgGpuAnimation/looks/shading/PunctualLight.h>
+#include <osgGpuAnimation/looks/shading/ViewLights.h>
 #include <osgGpuAnimation/scene/traversal/CullScopes.h>
 
 #include <osg/ColorMask>
@@ -25,7 +26,6 @@ namespace osgGpuAnimation
 namespace
 {
 
-constexpr unsigned int lightCount = 8;
 constexpr unsigned int generatedUnits = 8; ///< texture units with coordinate generation in OpenGL 2
 
 template <typename Attribute>
@@ -51,16 +51,16 @@ bool isSetOn(osg::State& state, ModeOf modeOf)
     return (value & osg::StateAttribute::ON) != 0;
 }
 
-bool isLightingOn(osg::State& state)
+bool isModeOn(osg::State& state, osg::StateAttribute::GLMode mode)
 {
-    if (!state.getUseModelViewAndProjectionUniforms()) return state.getLastAppliedMode(GL_LIGHTING);
-    return isSetOn(state, [](const osg::StateSet& stateSet) { return stateSet.getMode(GL_LIGHTING); });
+    if (!hasOwnLights(state)) return state.getLastAppliedMode(mode);
+    return isSetOn(state, [mode](const osg::StateSet& stateSet) { return stateSet.getMode(mode); });
 }
 
 bool isTexturingOn(osg::State& state)
 {
     if (isWhiteTexture(state.getLastAppliedTextureAttribute(0, osg::StateAttribute::TEXTURE))) return false;
-    if (!state.getUseModelViewAndProjectionUniforms()) return state.getLastAppliedTextureMode(0, GL_TEXTURE_2D);
+    if (!hasOwnLights(state)) return state.getLastAppliedTextureMode(0, GL_TEXTURE_2D);
     return isSetOn(state, [](const osg::StateSet& stateSet) { return stateSet.getTextureMode(0, GL_TEXTURE_2D); });
 }
 
@@ -116,18 +116,18 @@ bool isShiny(const osg::State& state)
            specular.z() != 0.0f;
 }
 
-bool isPointLight(const osg::State& state, unsigned int index)
+/// By number; null: none.
+std::array<const osg::Light*, ViewLights::lightCount> lightsOf(const osg::State& state)
 {
-    const auto* light = applied<osg::Light>(state, osg::StateAttribute::LIGHT, index);
-    return light && light->getPosition().w() != 0.0f;
+    std::array<const osg::Light*, ViewLights::lightCount> lights{};
+    const bool isOwn = hasOwnLights(state);
+    const auto placed = isOwn ? ViewLights::of(state) : std::array<ViewLights::Placed, ViewLights::lightCount>();
+    for (unsigned int index = 0; index < ViewLights::lightCount; ++index)
+        lights[index] = isOwn ? placed[index].light : applied<osg::Light>(state, osg::StateAttribute::LIGHT, index);
+    return lights;
 }
 
-/// Null: an osg::Light of another class.
-const PunctualLight* punctualLight(const osg::State& state, unsigned int index)
-{
-    return dynamic_cast<const PunctualLight*>(applied<osg::Light>(state, osg::StateAttribute::LIGHT, index));
-}
-
+/// The fixed pipeline's generated coordinates, which a core profile lacks, are part of osgShadow's maps.
 bool isShadowMap(const osg::State& state, unsigned int unit)
 {
     if (!state.getLastAppliedTextureMode(unit, GL_TEXTURE_GEN_S)) return false;
@@ -143,10 +143,10 @@ bool hasUniform(const osg::State& state, const char* name)
     return known != state.getUniformMap().end() && !known->second.uniformVec.empty();
 }
 
-ShaderKey::Fog fogOf(const osg::State& state)
+ShaderKey::Fog fogOf(osg::State& state)
 {
     const auto* fog = applied<osg::Fog>(state, osg::StateAttribute::FOG);
-    if (!fog || !state.getLastAppliedMode(GL_FOG)) return ShaderKey::Fog::None;
+    if (!fog || !isModeOn(state, GL_FOG)) return ShaderKey::Fog::None;
     switch (fog->getMode())
     {
     case osg::Fog::LINEAR:
@@ -158,16 +158,19 @@ ShaderKey::Fog fogOf(const osg::State& state)
     }
 }
 
-void readLights(const osg::State& state, ShaderKey& surface)
+void readLights(osg::State& state, ShaderKey& surface)
 {
     surface.lights = 0;
-    for (unsigned int index = 0; index < lightCount; ++index)
+    const auto lights = lightsOf(state);
+    for (unsigned int index = 0; index < lights.size(); ++index)
     {
-        if (!state.getLastAppliedMode(GL_LIGHT0 + index)) continue;
-        surface.lights |= static_cast<std::uint8_t>(1u << index);
-        if (!isPointLight(state, index)) continue;
-        surface.pointLights |= static_cast<std::uint8_t>(1u << index);
-        if (punctualLight(state, index)) surface.punctualLights |= static_cast<std::uint8_t>(1u << index);
+        const osg::Light* light = lights[index];
+        if (!isModeOn(state, GL_LIGHT0 + index) || (!light && hasOwnLights(state))) continue;
+        const auto bit = static_cast<std::uint8_t>(1u << index);
+        surface.lights |= bit;
+        if (!light || light->getPosition().w() == 0.0f) continue;
+        surface.pointLights |= bit;
+        if (dynamic_cast<const PunctualLight*>(light)) surface.punctualLights |= bit;
     }
     for (unsigned int unit = 1; unit < generatedUnits; ++unit)
         if (isShadowMap(state, unit)) surface.shadowMaps |= static_cast<std::uint8_t>(1u << unit);
@@ -210,10 +213,13 @@ void setPunctualLights(osg::State& state, unsigned int lights)
     static const unsigned int name = osg::Uniform::getNameID("punctualLights");
     const osg::Program::PerContextProgram* program = state.getLastAppliedProgramObject();
     if (!program) return;
-    std::array<osg::Vec4, lightCount> numbers;
-    for (unsigned int index = 0; index < lightCount; ++index)
-        if (lights & (1u << index)) numbers[index] = punctualLight(state, index)->coneAndRange();
-    state.get<osg::GLExtensions>()->glUniform4fv(program->getUniformLocation(name), lightCount, numbers[0].ptr());
+    std::array<osg::Vec4, ViewLights::lightCount> numbers;
+    const auto known = lightsOf(state);
+    for (unsigned int index = 0; index < known.size(); ++index)
+        if (const auto* light = dynamic_cast<const PunctualLight*>(known[index]); light && (lights & (1u << index)))
+            numbers[index] = light->coneAndRange();
+    state.get<osg::GLExtensions>()->glUniform4fv(program->getUniformLocation(name),
+                                                 static_cast<GLsizei>(numbers.size()), numbers[0].ptr());
 }
 
 bool givesWayToColors(const osg::Material& material)
@@ -264,7 +270,7 @@ ShaderKey ShaderKey::of(osg::State& state)
     surface.lights = 0;
     surface.isDepthOnly = isDefined(state, "POSE_DEPTH_ONLY") || isColorMasked(state);
     surface.isAlphaNeeded = surface.isDepthOnly && leavesPartsOut(state);
-    surface.isLit = !surface.isDepthOnly && isLightingOn(state) && !isOn(state, "unlit");
+    surface.isLit = !surface.isDepthOnly && isModeOn(state, GL_LIGHTING) && !isOn(state, "unlit");
     surface.hasFlatNormals = surface.isLit && isOn(state, "flatNormals");
     surface.hasSpecular = surface.isLit && isShiny(state);
     surface.isTextured = (!surface.isDepthOnly || surface.isAlphaNeeded) && isTexturingOn(state);
@@ -373,6 +379,7 @@ void ShaderPermutations::apply(osg::State& state) const
         if (surface.shadowMaps != 0) setShadowUnits(state);
         if (surface.punctualLights != 0) setPunctualLights(state, surface.punctualLights);
         setMaterial(state);
+        if (hasOwnLights(state)) setFixedState(state, surface.lights);
     }
     // The next StateSet may have other modes with the same program, which OSG would consider applied.
     state.haveAppliedAttribute(osg::StateAttribute::PROGRAM);

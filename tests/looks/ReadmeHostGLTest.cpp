@@ -38,25 +38,18 @@ const char* const hostFog = R"(#version 140
         color.rgb = mix(vec3(0.6, 0.7, 0.8), color.rgb, exp(0.05 * viewPosition.z));
     })";
 
-// Stands for the program of a host, as osgEarth's VirtualProgram: of the type PROGRAM, but no osg::Program.
+// The host's program. An osg::Program would do; this class stands for osgEarth's VirtualProgram, which is none.
 class HostProgram : public osg::StateAttribute
 {
 public:
-    explicit HostProgram(const char* color = hostFog, bool skins = false) : _program(new osg::Program)
+    explicit HostProgram(const char* color = hostFog) : _program(new osg::Program)
     {
         _program->addShader(new osg::Shader(osg::Shader::VERTEX, R"(#version 140
-            #pragma import_defines(POSE_SKINNING_PROGRAM)
-            void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal);
             void hostClipVertex(inout vec4 position, vec4 vertex);
             out vec3 viewPosition;
             void main()
             {
-                vec4 vertex = gl_Vertex;
-            #ifdef POSE_SKINNING_PROGRAM
-                vec3 normal = gl_Normal;
-                osgGpuAnimationSkin(vertex, normal);
-            #endif
-                vec4 eye = gl_ModelViewMatrix * vertex;
+                vec4 eye = gl_ModelViewMatrix * gl_Vertex;
                 viewPosition = eye.xyz;
                 gl_Position = gl_ProjectionMatrix * eye;
                 hostClipVertex(gl_Position, eye);
@@ -71,9 +64,6 @@ public:
                 hostFinalColor(fragmentColor);
             })"));
         _program->addShader(new osg::Shader(osg::Shader::FRAGMENT, color));
-        if (!skins) return;
-        _program->addShader(skinShader());   // osgGpuAnimation/looks/CharacterProgram.h
-        bindSkinAttributes(*_program);
     }
     HostProgram(const HostProgram& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY)
         : osg::StateAttribute(other, copyop), _program(other._program)
@@ -87,9 +77,8 @@ public:
         return 0;
     }
     void apply(osg::State& state) const override { _program->apply(state); }
-    osg::Program& program() { return *_program; }
 
-private:
+protected:
     osg::ref_ptr<osg::Program> _program;
 };
 // clang-format on
@@ -101,6 +90,34 @@ const char* const hostColor = R"(#version 140
     {
         color = vec4(0.5 + 0.05 * viewPosition.xy, -0.1 * viewPosition.z - 0.5, 1.0);
     })";
+
+/// A HostProgram that may skin.
+class TestedProgram : public HostProgram
+{
+public:
+    explicit TestedProgram(bool skins) : HostProgram(hostColor)
+    {
+        if (!skins) return;
+        _program->removeShader(_program->getShader(0));
+        _program->addShader(new osg::Shader(osg::Shader::VERTEX, R"(#version 140
+            void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal);
+            void hostClipVertex(inout vec4 position, vec4 vertex);
+            out vec3 viewPosition;
+            void main()
+            {
+                vec4 vertex = gl_Vertex;
+                vec3 normal = gl_Normal;
+                osgGpuAnimationSkin(vertex, normal);
+                vec4 eye = gl_ModelViewMatrix * vertex;
+                viewPosition = eye.xyz;
+                gl_Position = gl_ProjectionMatrix * eye;
+                hostClipVertex(gl_Position, eye);
+            })"));
+        _program->addShader(skinShader());
+        bindSkinAttributes(*_program);
+    }
+    osg::Program& program() { return *_program; }
+};
 
 constexpr auto on = osg::StateAttribute::ON;
 constexpr auto override = osg::StateAttribute::ON | osg::StateAttribute::OVERRIDE;
@@ -166,15 +183,14 @@ osg::ref_ptr<osg::Group> makeHostScene(osg::Node* subject, const Way* way)
     const osg::ref_ptr<osg::Group> scene = new osg::Group, own = new osg::Group;
     own->addChild(osg::createTexturedQuadGeometry(osg::Vec3(-6, 4, -6), osg::Vec3(12, 0, 0), osg::Vec3(0, -6, 12)));
     own->addChild(new osg::ShapeDrawable(new osg::Box(osg::Vec3(-1.2f, -1.5f, -1.2f), 0.9f)));
-    own->getOrCreateStateSet()->setAttribute(new HostProgram(hostColor));
+    own->getOrCreateStateSet()->setAttribute(new TestedProgram(false));
     scene->addChild(own);
     const osg::ref_ptr<osg::Group> below = new osg::Group;
     below->addChild(subject);
     scene->addChild(below);
     osg::StateSet& state = *below->getOrCreateStateSet();
     if (way && way->kind == Kind::Hooks) setHooks(state, way->value);
-    if (way && way->kind != Kind::Hooks)
-        state.setAttribute(new HostProgram(hostColor, way->kind == Kind::Skinning), way->value);
+    if (way && way->kind != Kind::Hooks) state.setAttribute(new TestedProgram(way->kind == Kind::Skinning), way->value);
     if (way && way->kind == Kind::Skinning) state.setDefine("POSE_SKINNING_PROGRAM");
     return scene;
 }
@@ -251,7 +267,7 @@ public:
     MeshPrograms() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) {}
     void apply(osg::Drawable& drawable) override
     {
-        drawable.getOrCreateStateSet()->setAttribute(new HostProgram(hostColor));
+        drawable.getOrCreateStateSet()->setAttribute(new TestedProgram(false));
         ++count;
     }
     int count = 0;
@@ -283,7 +299,7 @@ protected:
     {
         const osg::ref_ptr<osg::Group> scene = makeHostScene(makeSubject(Subject::Crowd), nullptr);
         osg::StateSet& above = *scene->getOrCreateStateSet();
-        above.setAttribute(new HostProgram(hostColor, true), override);
+        above.setAttribute(new TestedProgram(true), override);
         above.setDefine("POSE_SKINNING_PROGRAM");
         const Way plain{"", Kind::Plain, on};
         const osg::ref_ptr<osg::Image> expected = pictureOf(makeHostScene(makeBakedSubject(Subject::Crowd), &plain));
@@ -453,11 +469,11 @@ TEST_F(HostGLTest, theProgramsAboveReplaceTheKitsByOsgsRuleIfTheySkin)
     for (const bool isOsgProgram : {false, true})
         for (const AboveCase& each : cases)
         {
-            std::vector<osg::ref_ptr<HostProgram>> programs;
+            std::vector<osg::ref_ptr<TestedProgram>> programs;
             std::vector<osg::ref_ptr<osg::StateSet>> stateSets; // osg::State does not keep them
             for (const Above& above : each.above)
             {
-                programs.push_back(new HostProgram(hostFog, above.skins));
+                programs.push_back(new TestedProgram(above.skins));
                 stateSets.push_back(new osg::StateSet);
                 osg::StateSet* const stateSet = stateSets.back();
                 if (isOsgProgram)
@@ -569,6 +585,27 @@ TEST_F(HostGLTest, nearerHooksReplaceFartherOnes)
     EXPECT_NEAR(redUnder(override, hook("0.5"), on), 0.25, 0.01);
     EXPECT_NEAR(redUnder(override, hook("0.5"), protect), 0.5, 0.01);
     EXPECT_NEAR(redUnder(on, new ShaderHook(ShaderHook::Place::FinalColor), on), 1.0, 0.01);
+}
+
+// A faulty text names the hook, and the characters are not drawn.
+TEST_F(HostGLTest, aFaultyHookIsNamed)
+{
+    const std::pair<const char*, const char*> faults[] = {
+        {"void fog(inout vec4 color) {}", "expected a definition of void hostFinalColor(inout vec4 color), found none"},
+        {"void hostFinalColor(inout vec4 color) { color = ", "\"ShaderHook hostFinalColor\""},
+    };
+    const int drawn = Picture::pixelsDrawn(*pictureOf(makeWhitePanel()));
+    for (const auto& [text, message] : faults)
+    {
+        const osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::WARN);
+        osg::setNotifyHandler(log);
+        const osg::ref_ptr<osg::Group> scene = makeWhitePanel();
+        scene->getStateSet()->setAttribute(new ShaderHook(ShaderHook::Place::FinalColor, text));
+        EXPECT_EQ(Picture::pixelsDrawn(*pictureOf(scene)), text == faults[0].first ? drawn : 0);
+        osg::setNotifyHandler(new osg::StandardNotifyHandler);
+        EXPECT_NE(log->text.find(message), std::string::npos) << log->text;
+        EXPECT_EQ(log->text.find("does not skin"), std::string::npos) << log->text;
+    }
 }
 
 // The same text is the same program, in whatever hook, and a frame with hooks links nothing again.

@@ -44,10 +44,7 @@ public:
 
     /// No function: the kit's programs are as without a hook.
     explicit ShaderHook(Place place = Place::EyeVertex) : _place(place) {}
-    /// text: GLSL that defines the place's function, with a `#version` of its own or for GLSL 1.40. It may have
-    /// uniforms,
-    /// `#pragma import_defines`, and inputs or outputs: `viewPosition` and `viewNormal` of surfaceVertexShader(), or
-    /// any that a hook of another place writes.
+    /// See set().
     ShaderHook(Place place, const std::string& text) { set(place, text); }
     /// Shares the shader.
     ShaderHook(const ShaderHook& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
@@ -57,7 +54,10 @@ public:
     unsigned int getMember() const override { return firstMember + static_cast<unsigned int>(_place); }
     int compare(const osg::StateAttribute& other) const override;
 
-    /// Before a StateSet has the hook. An empty text: no function.
+    /// Before a StateSet has the hook. text: GLSL that defines the place's function, with a `#version` of its own or
+    /// for GLSL 1.40; empty: no function. A text without the function's name is a warning and no function. It may have
+    /// uniforms, import_defines, and inputs or outputs: `viewPosition` and `viewNormal` of surfaceVertexShader(), or
+    /// any that a hook of another place writes.
     void set(Place place, const std::string& text);
     Place getPlace() const { return _place; }
     const std::string& getText() const { return _text; } ///< as given

@@ -154,7 +154,10 @@ InstanceRuns::InstanceRuns(osg::State& state, const PosePipeline& pipeline, cons
 {
     static const unsigned int paletteName = osg::Uniform::getNameID("posePalette");
     const osg::Program::PerContextProgram* program = state.getLastAppliedProgramObject();
-    _isSkinned = program && program->getUniformLocation(paletteName) >= 0;
+    // A program of the kit's that does not link leaves none, and OSG says why: then nothing is drawn.
+    const bool isKits = !state.getLastAppliedAttribute(osg::StateAttribute::PROGRAM);
+    _isSkinned = program ? program->getUniformLocation(paletteName) >= 0 : isKits;
+    _isDrawn = program || !isKits;
     if (binding.getPlaced()) findPlaced();
     if (!_isSkinned) _view = state.getModelViewMatrix();
     if (binding.getSerial() == 0) return;
@@ -203,6 +206,7 @@ void InstanceRuns::findPlaced()
 
 InstanceRuns::Run InstanceRuns::at(std::size_t first) const
 {
+    if (!_isDrawn) return {};
     Run run = _binding.getPlaced() ? _placed : _binding.getSerial() != 0 ? runOfTransforms(first) : runOfBatch(first);
     if (!_isSkinned) run.count = std::min<std::size_t>(run.count, 1);
     return run;

@@ -94,6 +94,7 @@ private:
     PlacedInstanceBuffers::Textures _textures;
     const BufferTexture* _transforms = nullptr; ///< null: one draw per character
     bool _isSkinned = true;
+    bool _isDrawn = true;
     osg::Matrixd _view; ///< the draw's own model-view matrix
     osg::Matrixd _meshToRoots;
 };

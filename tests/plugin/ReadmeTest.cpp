@@ -148,6 +148,9 @@ TEST_F(ReadmeTest, picking)
     if (picked) std::cout << picked->set->skeleton().joint(picked->joint).name << std::endl;
     ASSERT_TRUE(picked);
     EXPECT_EQ(picked->character, findCharacter(*scene));
+    EXPECT_TRUE(picked->character->getController().isPlaying());
+    if (picked && picked->character) picked->character->getController().pause();
+    EXPECT_FALSE(picked->character->getController().isPlaying());
 }
 
 TEST_F(ReadmeTest, loadingWithOptions)

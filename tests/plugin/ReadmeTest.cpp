@@ -185,7 +185,7 @@ TEST_F(ReadmeTest, garmentsAndParts)
     auto worn = fox->wear(coat);
     if (succeeded(worn)) std::cout << worn.value().addedEntries << " further palette entries" << std::endl;
     EXPECT_EQ(fox->getNumChildren(), 2 * before);
-    if (!fox->takeOff(coat)) std::cout << "the coat was not worn" << std::endl;
+    succeeded(fox->takeOff(coat));
     EXPECT_EQ(fox->getNumChildren(), before);
     if (fox->getMeshes().find("Lantern")) succeeded(fox->getMeshes().setVisible("Lantern", false));
     EXPECT_EQ(fox->getMeshes().find("Lantern")->getNodeMask(), 0u);
@@ -484,7 +484,7 @@ TEST_F(ReadmeDirectingTest, crowds)
         });
     succeeded(crowd->setStateGraph(leader, graph));
     crowd->update(0.0);
-    crowd->getStateMachine(leader)->set("speed", 2.0);
+    succeeded(crowd->getStateMachine(leader)->set("speed", 2.0));
     crowd->update(0.1);
     EXPECT_EQ(crowd->getStateMachine(leader)->state(), "run");
 
@@ -595,8 +595,8 @@ TEST_F(ReadmeDirectingTest, states)
     if (succeeded(graph))
     {
         StateMachine machine(graph.value());
-        machine.set("speed", 1.0);
-        machine.fire("wave");
+        succeeded(machine.set("speed", 1.0));
+        succeeded(machine.fire("wave"));
         machine.update(wanderer->getController(), seconds);
         EXPECT_EQ(machine.state(), "stand");
         machine.update(wanderer->getController(), seconds);

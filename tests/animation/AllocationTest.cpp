@@ -57,7 +57,7 @@ TEST(AllocationTest, playingDoesNotAllocate)
         {"a state machine", gaits,
          [&](AnimationController& c, int i)
          {
-             machine.set(speed, i % 40 < 20 ? 1.0 : 0.0);
+             EXPECT_TRUE(machine.set(speed, i % 40 < 20 ? 1.0 : 0.0));
              machine.update(c, 0.037);
          }},
     };

@@ -212,6 +212,7 @@ TEST(ConstraintTest, areSolvedInTheOrderOfTheirDeclaration)
         const glm::dvec3 chest(0, 1.5, 0);
         const glm::dvec3 carried = chest + glm::angleAxis(pi / 4, glm::dvec3(0, 1, 0)) * (held - chest);
         EXPECT_LE(glm::distance(placeOf(controller, "hand"), isReachFirst ? carried : held), 1e-6) << isReachFirst;
+        EXPECT_EQ(controller.constraint("reach").isReached(), !isReachFirst);
     }
 }
 
@@ -410,6 +411,61 @@ TEST(ConstraintHandleTest, aRefusalNamesTheConstraintAndTheValue)
         EXPECT_EQ(c.result.error().message, c.message);
     }
     EXPECT_TRUE(ControllerDetail::isPlainLoop(controller)) << "nothing was changed";
+}
+
+TEST(ConstraintHandleTest, answersHowFarTheChainStaysFromItsTarget)
+{
+    Joint hip = jointAt("hip", {0, 2, 0});
+    hip.rest.scale = {2, 2, 2, 0};
+    LookAt look{"look", {"hip"}};
+    look.cone = 0.4f;
+    look.turnSpeed = 0.5f;
+    const TwoBoneIk leg{"leg", "hip", "knee", "foot"};
+    const auto set =
+        limbOf({hip, jointAt("knee", {0, -1, 0.1f}), jointAt("foot", {0, -1, -0.1f})}, {look, leg}).value();
+    const double length = 4.0 * std::sqrt(1.01), none = -1.0;
+    struct Case
+    {
+        const char *constraint, *what;
+        glm::vec3 target;
+        float weight;
+        double seconds, distance;
+        bool isReached;
+    };
+    const Case cases[] = {
+        {"leg", "within reach", {1, 0, 1}, 1, 0, 0, true},
+        {"leg", "beyond reach", {0, -2.5f, 0}, 1, 0, 4.5 - length, false},
+        {"leg", "half the weight", {3, 2, 0}, 0.5f, 0, none, false},
+        {"leg", "no weight: where the clips leave it", {0, -2, 3}, 0, 0, 3, false},
+        {"look", "a turn that has begun", {5, 2, 0}, 1, 0.5, pi / 2 - 0.25, false},
+        {"look", "beyond the cone", {5, 2, 0}, 1, 9, pi / 2 - 0.4, false},
+        {"look", "within the cone", {std::sin(0.3f), 2, std::cos(0.3f)}, 1, 9, 0, true},
+    };
+    for (const Case& c : cases)
+    {
+        AnimationController controller(set);
+        ConstraintHandle handle = controller.constraint(c.constraint);
+        EXPECT_EQ(handle.distance().error().message, "constraint \"" + std::string(c.constraint) + "\" has no target");
+        EXPECT_FALSE(handle.isReached()) << "no target";
+        ASSERT_TRUE(handle.setTarget(c.target) && handle.setWeight(c.weight));
+        controller.advance(c.seconds);
+        const bool isLeg = c.constraint == std::string("leg");
+        const double left = isLeg ? glm::distance(placeOf(controller, "foot"), glm::dvec3(c.target))
+                                  : Sight(controller, "hip", look).angleTo(c.target);
+        EXPECT_NEAR(handle.distance().value(), left, 1e-6) << c.what;
+        EXPECT_NEAR(left, c.distance == none ? left : c.distance, 1e-6) << c.what;
+        EXPECT_NEAR(handle.reach().value(), isLeg ? length : 0.4, 1e-6) << c.what;
+        EXPECT_EQ(handle.isReached(), c.isReached) << c.what;
+        const glm::dmat3 toMillimetres(1000.0);
+        const double unit = isLeg ? 1000.0 : 1.0;
+        EXPECT_NEAR(handle.distance(toMillimetres).value(), unit * handle.distance().value(), 1e-6) << c.what;
+        EXPECT_NEAR(handle.reach(toMillimetres).value(), unit * handle.reach().value(), 1e-6) << c.what;
+    }
+    AnimationController controller(set);
+    for (const Result<double>& answer :
+         {controller.constraint("nose").distance(), controller.constraint("nose").reach()})
+        EXPECT_EQ(answer.error().message, "there is no constraint \"nose\"; the constraints are \"look\", \"leg\"");
+    EXPECT_FALSE(controller.constraint("nose").isReached());
 }
 
 TEST(ConstraintHandleTest, aTargetWithATurnSpeedStartsAnewAfterClear)

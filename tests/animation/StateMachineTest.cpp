@@ -138,9 +138,15 @@ TEST_F(StateMachineTest, theClockOfAStateStartsAtEachVisit)
 TEST_F(StateMachineTest, refusesWhatItDoesNotKnow)
 {
     StateMachine machine = machineOf(description(), 2);
-    EXPECT_FALSE(machine.set("height", 1.0));
-    EXPECT_FALSE(machine.set("speed", std::nan("")));
-    EXPECT_FALSE(machine.fire("speed"));
+    const std::pair<Result<void>, const char*> faults[] = {
+        {machine.set("height", 1.0), "there is no parameter \"height\"; the parameters are \"speed\""},
+        {machine.set("speed", std::nan("")), "parameter \"speed\": its value is nan"},
+        {machine.fire("speed"), "there is no trigger \"speed\"; the triggers are \"spin\""}};
+    for (const auto& [result, message] : faults)
+    {
+        ASSERT_FALSE(result) << message;
+        EXPECT_EQ(result.error().message, message);
+    }
     EXPECT_EQ(machine.value("speed"), 0.0);
     EXPECT_EQ(machine.value("height"), 0.0);
     machine.update(controller, std::nan(""));
@@ -156,8 +162,8 @@ TEST_F(StateMachineTest, aControllerOfAnotherSetStaysAsItIs)
     AnimationController controller(poor);
     StateMachine machine = machineOf();
     EXPECT_TRUE(machine.update(controller, 0.1)) << "the first clip is there";
-    machine.set("speed", 1.0);
-    machine.fire("spin");
+    EXPECT_TRUE(machine.set("speed", 1.0));
+    EXPECT_TRUE(machine.fire("spin"));
     EXPECT_FALSE(machine.update(controller, 0.1));
     EXPECT_EQ(machine.state(), "stand");
     EXPECT_NEAR(machine.secondsInState(), 0.1, 1e-9);
@@ -228,7 +234,7 @@ TEST_F(StateMachineTest, eachComparisonBelowAtAndAboveItsNumber)
         {
             StateMachine machine =
                 machineOf({{{"stand", "Idle"}, {"go", "Walk"}}, {{"stand", "go", {c.condition}}}, ""});
-            machine.set("x", value);
+            EXPECT_TRUE(machine.set("x", value));
             machine.update(controller, 0.1);
             EXPECT_EQ(machine.update(controller, 0.1), isTaken) << c.condition << " at " << value;
         }
@@ -268,16 +274,16 @@ TEST_F(StateMachineTest, aBlendSpaceGetsBothParametersAtOnceAndTheCurveIsThatOfT
     const StateGraphDescription description{
         {move, aim}, {{"move", "aim", {"aim"}, 1.0, FadeCurve::Smooth}, {"aim", "move", {"go"}}}, "", true};
     StateMachine machine = machineOf(description);
-    machine.set("x", 0.25);
-    machine.set("y", 0.5);
-    machine.set("angle", 0.75);
+    EXPECT_TRUE(machine.set("x", 0.25));
+    EXPECT_TRUE(machine.set("y", 0.5));
+    EXPECT_TRUE(machine.set("angle", 0.75));
     ASSERT_TRUE(machine.update(controller, 0.1));
     EXPECT_EQ(controller.layer(0).settings().parameter, glm::dvec2(0.25, 0.5)) << "from the first frame on";
     EXPECT_TRUE(controller.layer(0).settings().isPhaseShared);
-    machine.set("y", 0.25);
+    EXPECT_TRUE(machine.set("y", 0.25));
     EXPECT_FALSE(machine.update(controller, 0.1));
     EXPECT_EQ(controller.layer(0).settings().parameter, glm::dvec2(0.25, 0.25));
-    machine.fire("aim");
+    EXPECT_TRUE(machine.fire("aim"));
     ASSERT_TRUE(machine.update(controller, 0.1));
     EXPECT_EQ(controller.layer(0).settings().parameter, glm::dvec2(0.75, 0.0)) << "of the new state, at once";
     controller.advance(0.25);
@@ -290,7 +296,7 @@ TEST_F(StateMachineTest, aPausedClipHasNotFinished)
 {
     StateMachine machine = machineOf();
     machine.update(controller, 0.0);
-    machine.fire("spin");
+    EXPECT_TRUE(machine.fire("spin"));
     ASSERT_TRUE(machine.update(controller, 0.1));
     controller.pause();
     EXPECT_FALSE(machine.update(controller, 0.1));

@@ -211,8 +211,15 @@ TEST(GarmentTest, thatCannotBeWornLeavesTheBodyAlone)
         EXPECT_EQ(result.error().message, bad.message);
         EXPECT_EQ(body->getNumChildren(), 2u);
     }
-    EXPECT_FALSE(body->takeOff(nullptr));
-    EXPECT_FALSE(body->takeOff(body->getChild(0))) << "the body's own";
+    const std::pair<const osg::Node*, const char*> notWorn[] = {
+        {nullptr, "there is no garment to take off"},
+        {body->getChild(0), "the character does not wear \"arm\"; the meshes of its garments are \"sleeve\""}};
+    for (const auto& [garment, message] : notWorn)
+    {
+        const Result<void> taken = body->takeOff(garment);
+        ASSERT_FALSE(taken) << message;
+        EXPECT_EQ(taken.error().message, message);
+    }
 }
 
 TEST(GarmentTest, isSharedByAllWhoWearIt)

@@ -250,6 +250,7 @@ TEST(JointAttachmentTest, withoutItsJointOrACharacterItStaysAtTheOriginAndWarnsO
     for (int frame = 0; frame < 5; ++frame)
         updateAt(*scene, 0.1 * frame);
     EXPECT_EQ(warnings(), 1);
+    EXPECT_NE(log->text.find("\"side\""), std::string::npos) << "it lists the joints: " << log->text;
     attachment->setJoint("fin");
     updateAt(*scene, 1.0);
     EXPECT_EQ(warnings(), 2) << "another joint";

@@ -5,10 +5,13 @@
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
+#include <osgGpuAnimation/scene/OsgMatrix.h>
 
 #include <osg/ComputeBoundsVisitor>
+#include <osgViewer/Viewer>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace osgGpuAnimation
@@ -193,6 +196,146 @@ TEST(NodeConstraintsTest, polesTwistsAndRotationsAreInTheCharactersOwnSpace)
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column)
             EXPECT_NEAR(foot(row, column), wanted(row, column), 1e-4) << row << ' ' << column;
+}
+
+namespace
+{
+
+/// Sets the matrix of a transform, by the time of the frame.
+class Moving : public osg::NodeCallback
+{
+public:
+    explicit Moving(std::function<osg::Matrixd(double)> matrixAt) : _matrixAt(std::move(matrixAt)) {}
+    void operator()(osg::Node* node, osg::NodeVisitor* visitor) override
+    {
+        node->asTransform()->asMatrixTransform()->setMatrix(_matrixAt(visitor->getFrameStamp()->getSimulationTime()));
+        traverse(node, visitor);
+    }
+
+private:
+    std::function<osg::Matrixd(double)> _matrixAt;
+};
+
+/// The largest difference of two matrices without their scales.
+double distanceOfPlaces(osg::Matrixd a, osg::Matrixd b)
+{
+    double largest = (a.getTrans() - b.getTrans()).length();
+    for (osg::Matrixd* matrix : {&a, &b})
+        *matrix = rotationOf(*matrix);
+    for (int cell = 0; cell < 16; ++cell)
+        largest = std::max(largest, std::abs(a.ptr()[cell] - b.ptr()[cell]));
+    return largest;
+}
+
+} // namespace
+
+// A pedal below feet, in a ship that moves, too. The update traversal reaches it after the walker and the crowd.
+TEST(NodeConstraintsTest, aLimbKeepsItsGripOfANodeThatMovesAndTurnsInTheSameFrame)
+{
+    const auto shipAt = [](double time) {
+        return osg::Matrixd::rotate(0.4 * time, osg::Vec3d(0, 1, 2)) *
+               osg::Matrixd::translate(900 + 40 * time, 2000, 30);
+    };
+    const auto pedalAt = [&](double time)
+    {
+        return osg::Matrixd::scale(3, 3, 3) * osg::Matrixd::rotate(2.0 * time, osg::Vec3d(1, 1, 0)) *
+               osg::Matrixd::translate(0.1 + 0.05 * std::sin(3.0 * time), -0.15, 0.5) * shipAt(time);
+    };
+    const osg::ref_ptr<AnimatedCharacter> walker = Walker::make();
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*walker);
+    const AnimatedCrowd::Instance child =
+        crowd
+            ->add(osg::Matrixd::scale(0.5, 0.5, 0.5) * osg::Matrixd::rotate(0.5, osg::Vec3d(0, 0, 1)) *
+                      osg::Matrixd::translate(0.1, 0, 0.25),
+                  walker->getController())
+            .value();
+    const osg::ref_ptr<osg::MatrixTransform> ship = new osg::MatrixTransform, pedal = new osg::MatrixTransform;
+    ship->addUpdateCallback(new Moving(shipAt));
+    ship->addChild(walker);
+    ship->addChild(crowd);
+    pedal->addUpdateCallback(new Moving(pedalAt));
+    osg::ref_ptr<osg::Group> scene = new osg::Group;
+    scene->addChild(ship);
+    scene->addChild(pedal);
+    osgViewer::Viewer viewer;
+    viewer.setSceneData(scene);
+    const osg::Vec3d grip(0.01, 0.02, -0.01);
+    const osg::Quat turn(0.7, osg::Vec3d(1, 2, 3));
+    const NodeConstraint legs[] = {walker->constraint("left"), crowd->constraint(child, "left")};
+    for (NodeConstraint leg : legs)
+        ASSERT_TRUE(leg.follow(pedal, grip, turn));
+    for (const double time : {0.0, 0.016, 0.1, 1.0, 2.5})
+    {
+        viewer.advance(time);
+        viewer.updateTraversal();
+        const osg::Matrixd held = osg::Matrixd::rotate(turn) * osg::Matrixd::translate(grip) * pedalAt(time);
+        const osg::Matrixd foot = walker->jointToModel("foot.L").value() * shipAt(time);
+        const osg::Matrixd childsFoot = crowd->jointToCrowd(child, "foot.L").value() * shipAt(time);
+        EXPECT_LE(distanceOfPlaces(foot, held), 1e-6) << time;
+        EXPECT_LE(distanceOfPlaces(childsFoot, held), 1e-6) << time;
+        EXPECT_LE(legs[0].getDistance().value(), 1e-6) << "in the ship's metres";
+        EXPECT_LE(legs[1].getDistance().value(), 1e-6);
+        EXPECT_TRUE(legs[0].isReached() && legs[1].isReached());
+    }
+}
+
+TEST(NodeConstraintsTest, aFollowedRotationEndsWithThatOfTheApplication)
+{
+    const osg::ref_ptr<AnimatedCharacter> walker = Walker::make();
+    const osg::ref_ptr<osg::MatrixTransform> pedal = new osg::MatrixTransform(
+        osg::Matrixd::rotate(1.0, osg::Vec3d(1, 0, 0)) * osg::Matrixd::translate(0.1, -0.2, 0.4));
+    NodeConstraint leg = walker->constraint("left");
+    const auto isHeld = [&](const osg::Matrixd& place)
+    {
+        walker->update(0.0);
+        return distanceOfPlaces(walker->jointToModel("foot.L").value(), place) <= 1e-6;
+    };
+    ASSERT_TRUE(leg.follow(pedal, osg::Vec3d(), osg::Quat()));
+    const osg::Matrixd before = pedal->getMatrix();
+    EXPECT_TRUE(isHeld(before));
+    pedal->setMatrix(osg::Matrixd::rotate(2.0, osg::Vec3d(1, 0, 0)) * osg::Matrixd::translate(std::nan(""), 0, 0));
+    EXPECT_TRUE(isHeld(before)) << "neither place nor rotation of a place that is not finite";
+    const osg::Quat own(0.3, osg::Vec3d(0, 0, 1));
+    pedal->setMatrix(before);
+    ASSERT_TRUE(leg.setRotation(own));
+    const osg::Matrixd turned = osg::Matrixd::rotate(own) * osg::Matrixd::translate(before.getTrans());
+    EXPECT_TRUE(isHeld(turned));
+    ASSERT_TRUE(leg.follow(pedal));
+    EXPECT_TRUE(isHeld(turned)) << "the place alone is followed";
+    EXPECT_FALSE(leg.follow(nullptr, osg::Vec3d(), osg::Quat()));
+    EXPECT_FALSE(leg.follow(pedal, osg::Vec3d(std::nan(""), 0, 0), osg::Quat()));
+    EXPECT_FALSE(leg.follow(pedal, osg::Vec3d(), osg::Quat(0, 0, 0, HUGE_VAL)));
+    EXPECT_FALSE(walker->constraint("head").follow(pedal, osg::Vec3d(), osg::Quat()));
+    EXPECT_TRUE(isHeld(turned)) << "errors change nothing";
+    EXPECT_FALSE(walker->getController().constraint("head").hasTarget());
+}
+
+TEST(NodeConstraintsTest, answersHaveTheUnitsOfTheSpaceAbove)
+{
+    const osg::ref_ptr<AnimatedCharacter> walker = Walker::make();
+    walker->setMatrix(osg::Matrixd::scale(7, 7, 7));
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*walker);
+    const AnimatedCrowd::Instance giant =
+        crowd->add(osg::Matrixd::scale(2, 2, 2) * osg::Matrixd::translate(1e6, 0, 0), walker->getController()).value();
+    const osg::Matrixd hip = walker->jointToModel("thigh.L").value(),
+                       giantsHip = crowd->jointToCrowd(giant, "thigh.L").value();
+    NodeConstraint leg = walker->constraint("left"), giantsLeg = crowd->constraint(giant, "left");
+    const double length = leg.getReach().value();
+    EXPECT_NEAR(length, 0.9, 1e-6) << "two bones of 0.45 m";
+    EXPECT_NEAR(giantsLeg.getReach().value(), 2.0 * length, 1e-6);
+    EXPECT_FALSE(leg.getDistance()) << "no target";
+    const osg::Vec3d down(0, 0, -2);
+    ASSERT_TRUE(leg.setTarget(hip.getTrans() + down));
+    ASSERT_TRUE(giantsLeg.setTarget(giantsHip.getTrans() + down));
+    EXPECT_NEAR(leg.getDistance().value(), 2.0 - length, 1e-5);
+    EXPECT_NEAR(giantsLeg.getDistance().value(), 2.0 - 2.0 * length, 1e-5);
+    EXPECT_FALSE(leg.isReached() || giantsLeg.isReached());
+    NodeConstraint head = crowd->constraint(giant, "head");
+    EXPECT_NEAR(head.getReach().value(), osg::PI, 1e-6) << "an angle, whatever the scale";
+    crowd->remove(giant);
+    EXPECT_FALSE(crowd->constraint(giant, "left").getDistance());
+    EXPECT_FALSE(crowd->constraint(giant, "left").getReach());
+    EXPECT_FALSE(crowd->constraint(giant, "left").isReached());
 }
 
 TEST(NodeConstraintsTest, badInputIsAnErrorAndKeepsThePose)

@@ -20,6 +20,7 @@
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
 #include <osgGpuAnimation/nodes/SpringBones.h>
 #include <osgGpuAnimation/nodes/StateGraphFile.h>
+#include <osgGpuAnimation/scene/OsgMatrix.h>
 
 #include <gtest/gtest.h>
 #include <osg/Geometry>
@@ -148,6 +149,9 @@ TEST_F(ReadmeTest, picking)
     if (picked) std::cout << picked->set->skeleton().joint(picked->joint).name << std::endl;
     ASSERT_TRUE(picked);
     EXPECT_EQ(picked->character, findCharacter(*scene));
+    EXPECT_TRUE(picked->character->getController().isPlaying());
+    if (picked && picked->character) picked->character->getController().pause();
+    EXPECT_FALSE(picked->character->getController().isPlaying());
 }
 
 TEST_F(ReadmeTest, loadingWithOptions)
@@ -182,7 +186,7 @@ TEST_F(ReadmeTest, garmentsAndParts)
     auto worn = fox->wear(coat);
     if (succeeded(worn)) std::cout << worn.value().addedEntries << " further palette entries" << std::endl;
     EXPECT_EQ(fox->getNumChildren(), 2 * before);
-    if (!fox->takeOff(coat)) std::cout << "the coat was not worn" << std::endl;
+    succeeded(fox->takeOff(coat));
     EXPECT_EQ(fox->getNumChildren(), before);
     if (fox->getMeshes().find("Lantern")) succeeded(fox->getMeshes().setVisible("Lantern", false));
     EXPECT_EQ(fox->getMeshes().find("Lantern")->getNodeMask(), 0u);
@@ -481,7 +485,7 @@ TEST_F(ReadmeDirectingTest, crowds)
         });
     succeeded(crowd->setStateGraph(leader, graph));
     crowd->update(0.0);
-    crowd->getStateMachine(leader)->set("speed", 2.0);
+    succeeded(crowd->getStateMachine(leader)->set("speed", 2.0));
     crowd->update(0.1);
     EXPECT_EQ(crowd->getStateMachine(leader)->state(), "run");
 
@@ -528,6 +532,39 @@ TEST_F(ReadmeDirectingTest, constraints)
     EXPECT_TRUE(wanderer->getController().constraint("look").hasTarget());
     EXPECT_EQ(wanderer->getController().constraint("reach").target().weight, 0.5f);
     succeeded(wanderer->constraint("look").clear());
+
+    ASSERT_TRUE(wanderer->constraint("reach").clear());
+    osg::ref_ptr<osg::MatrixTransform> yoke = new osg::MatrixTransform(osg::Matrix::rotate(0.4, osg::Vec3d(0, 0, 1)) *
+                                                                       osg::Matrix::translate(-0.4, -0.3, 1.2));
+    const osg::Vec3d grip(0.1, 0, 0);
+    const osg::Quat palm(1.2, osg::Vec3d(0, 1, 0));
+    succeeded(wanderer->constraint("reach").follow(yoke, grip, palm));
+    const auto rotationOfHand = [&] { return rotationOf(wanderer->jointToModel("Hand_R").value()).getRotate(); };
+    const auto isAlike = [](const osg::Quat& a, const osg::Quat& b)
+    { return std::min((a - b).length(), (a + b).length()) <= 1e-5; };
+    EXPECT_LT((placeOf("Hand_R") - grip * yoke->getMatrix()).length(), 1e-5);
+    EXPECT_TRUE(isAlike(rotationOfHand(), palm * yoke->getMatrix().getRotate()));
+
+    succeeded(wanderer->constraint("look").follow(bird, osg::Vec3d(0, 0, 0.2)));
+    wanderer->getController().advance(2.0);
+    EXPECT_LT(missOf(*wanderer, {0, 0, 1}, {0, -5, 5.2}), 1e-3);
+    const auto top = [&]
+    { return osg::Matrixd::transform3x3(osg::Vec3d(0, 1, 0), wanderer->jointToModel("Head").value()); };
+    const osg::Vec3d before = top(), sight = osg::Vec3d(0, -5, 5.2) - placeOf("Head");
+    succeeded(wanderer->constraint("look").setTwist(0.3));
+    EXPECT_LT((top() - osg::Quat(0.3, sight) * before).length(), 1e-3);
+
+    auto distance = wanderer->constraint("reach").getDistance();
+    auto armLength = wanderer->constraint("reach").getReach();
+    bool holds = wanderer->constraint("reach").isReached();
+    EXPECT_TRUE(holds);
+    EXPECT_LT(distance.value(), 1e-5);
+    EXPECT_NEAR(armLength.value(), 0.5, 0.1);
+
+    succeeded(wanderer->constraint("reach").setRotation(osg::Quat(1.5, osg::Vec3d(1, 0, 0))));
+    EXPECT_TRUE(isAlike(rotationOfHand(), osg::Quat(1.5, osg::Vec3d(1, 0, 0))));
+    ASSERT_TRUE(wanderer->constraint("reach").setRotation(osg::Quat(0, 0, 0, 0)));
+    EXPECT_EQ(wanderer->getController().constraint("reach").target().rotation, glm::vec4(0.0f)) << "the clips alone";
 }
 
 TEST_F(ReadmeDirectingTest, theAxesOfAJoint)
@@ -592,8 +629,8 @@ TEST_F(ReadmeDirectingTest, states)
     if (succeeded(graph))
     {
         StateMachine machine(graph.value());
-        machine.set("speed", 1.0);
-        machine.fire("wave");
+        succeeded(machine.set("speed", 1.0));
+        succeeded(machine.fire("wave"));
         machine.update(wanderer->getController(), seconds);
         EXPECT_EQ(machine.state(), "stand");
         machine.update(wanderer->getController(), seconds);

@@ -93,7 +93,10 @@ public:
     double normalizedTime() const { return _base.playback().normalizedTime(); } ///< time / duration, in [0, 1]
 
     /// The constraint of that name. If the set has none, all functions of the handle return an error.
-    ConstraintHandle constraint(const std::string& name) { return ConstraintHandle(set(), _goals, name); }
+    ConstraintHandle constraint(const std::string& name)
+    {
+        return ConstraintHandle(set(), _goals, name, [this]() -> const PoseInstruction& { return instruction(); });
+    }
 
     /// Moves every playing layer by seconds times its speed, passes the events of the step to the callback in the order
     /// of time, and returns the new instruction. seconds: negative moves clips backwards, but no fades; not finite

@@ -4,8 +4,10 @@
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/constraints/AxisTurns.h>
 #include <osgGpuAnimation/animation/constraints/ConstraintGoals.h>
+#include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/math/Rotation.h>
 
+#include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 
 #include <algorithm>
@@ -35,8 +37,8 @@ std::string faultOf(const char* what, const glm::vec3& v)
 } // namespace
 
 ConstraintHandle::ConstraintHandle(const AnimationSet& set, std::unique_ptr<ConstraintGoals>& goals,
-                                   const std::string& name)
-    : _set(&set), _goals(&goals), _index(set.constraintNamed(name))
+                                   const std::string& name, Instruction instruction)
+    : _set(&set), _goals(&goals), _index(set.constraintNamed(name)), _instruction(std::move(instruction))
 {
 }
 
@@ -46,10 +48,10 @@ Result<void> ConstraintHandle::change(const std::string& fault, Change change)
 {
     if (!_index) return _index.error();
     const std::vector<ConstraintChain>& chains = _set->constraintChains();
-    if (!fault.empty()) return Error{"constraint \"" + chains[_index.value()].name + "\": " + fault};
+    if (!fault.empty()) return Error{"constraint \"" + chain().name + "\": " + fault};
     if (!*_goals) *_goals = std::make_unique<ConstraintGoals>(chains.size());
     change((*_goals)->goal(_index.value()));
-    if (chains[_index.value()].turnSpeed > 0.0) (*_goals)->advance(chains, 0.0);
+    if (chain().turnSpeed > 0.0) (*_goals)->advance(chains, 0.0);
     return {};
 }
 
@@ -86,7 +88,7 @@ Result<void> ConstraintHandle::setTwist(float radians)
 Result<void> ConstraintHandle::setRotation(const glm::vec4& rotation)
 {
     std::string fault;
-    if (_index && _set->constraintChains()[_index.value()].isLookAt)
+    if (_index && chain().isLookAt)
         fault = "a look-at has no target rotation";
     else if (!isNear(rotation.x) || !isNear(rotation.y) || !isNear(rotation.z) || !isNear(rotation.w))
         fault = "its rotation (" + std::to_string(rotation.x) + ", " + std::to_string(rotation.y) + ", " +
@@ -133,8 +135,47 @@ Result<void> ConstraintHandle::setShownTarget(const glm::vec3& position)
     return change(faultOf("its shown target", position),
                   [&](ConstraintGoal& goal)
                   {
-                      if (_set->constraintChains()[_index.value()].turnSpeed > 0.0) goal.shown = position;
+                      if (chain().turnSpeed > 0.0) goal.shown = position;
                   });
+}
+
+const ConstraintChain& ConstraintHandle::chain() const
+{
+    return _set->constraintChains()[_index.value()];
+}
+
+glm::dmat4 ConstraintHandle::jointToModel(std::size_t place) const
+{
+    const auto joint = static_cast<std::size_t>(chain().joints[place]);
+    return Pose::jointToModel(*_set, _instruction(), joint).toColumns();
+}
+
+Result<double> ConstraintHandle::distance(const glm::dmat3& toSpace) const
+{
+    if (!_index) return _index.error();
+    if (!hasTarget()) return Error{"constraint \"" + chain().name + "\" has no target"};
+    const glm::dmat4 end = jointToModel(chain().joints.size() - 1);
+    const glm::dvec3 from(end * glm::dvec4(chain().offset, 1.0));
+    const glm::dvec3 line = toSpace * (glm::dvec3(target().position) - from);
+    if (!chain().isLookAt) return glm::length(line);
+    const glm::dvec3 forward = toSpace * glm::dmat3(end) * chain().forward;
+    return std::atan2(glm::length(glm::cross(forward, line)), glm::dot(forward, line));
+}
+
+Result<double> ConstraintHandle::reach(const glm::dmat3& toSpace) const
+{
+    if (!_index) return _index.error();
+    if (chain().isLookAt) return chain().cone;
+    const glm::dvec3 start(jointToModel(0)[3]), mid(jointToModel(chain().mid)[3]),
+        end(jointToModel(chain().joints.size() - 1)[3]);
+    return glm::length(toSpace * (mid - start)) + glm::length(toSpace * (end - mid));
+}
+
+bool ConstraintHandle::isReached() const
+{
+    constexpr double tolerance = 0.001;
+    const Result<double> left = distance();
+    return left && left.value() <= tolerance * (chain().isLookAt ? 1.0 : reach().value());
 }
 
 } // namespace osgGpuAnimation

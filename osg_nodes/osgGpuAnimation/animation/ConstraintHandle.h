@@ -4,16 +4,22 @@
 #include <osgGpuAnimation/animation/Constraint.h>
 #include <osgGpuAnimation/math/Result.h>
 
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <string>
 
 namespace osgGpuAnimation
 {
 
+struct ConstraintChain;
 struct ConstraintGoal;
 class AnimationSet;
 class ConstraintGoals;
+struct PoseInstruction;
 
 /// A constraint of one controller, see AnimationSet::withConstraints(). A handle is used at once and not kept:
 ///
@@ -53,17 +59,36 @@ public:
     /// those of setTarget().
     Result<void> setShownTarget(const glm::vec3& position);
 
+    // Answers of the present pose, computed by the CPU twin at each call: constraints that nobody asks cost nothing.
+
+    /// How far the chain is from target(). A limb: from its end joint to the target, in the file's units. A look-at:
+    /// radians between its forward axis and the line to the target. toSpace: the linear part of a transform from model
+    /// space; the units are then those of its result. Further error: there is no target.
+    Result<double> distance(const glm::dmat3& toSpace = glm::dmat3(1.0)) const;
+    /// How far the chain can reach. A limb: the length of its two bones, from the start joint, in the file's units. A
+    /// look-at: its cone, radians from where the clips look. toSpace: as for distance().
+    Result<double> reach(const glm::dmat3& toSpace = glm::dmat3(1.0)) const;
+    /// True if distance() is at most a thousandth: of a limb's reach(), of a radian. False without a constraint of that
+    /// name or without a target.
+    bool isReached() const;
+
 private:
     friend class AnimationController;
+    using Instruction = std::function<const PoseInstruction&()>; ///< the controller's present one
+
     /// goals: of the controller; made at the first change.
-    ConstraintHandle(const AnimationSet& set, std::unique_ptr<ConstraintGoals>& goals, const std::string& name);
+    ConstraintHandle(const AnimationSet& set, std::unique_ptr<ConstraintGoals>& goals, const std::string& name,
+                     Instruction instruction);
     template <typename Change>
     Result<void> change(const std::string& fault, Change change);
     const ConstraintGoal* find() const; ///< null: nothing was set
+    const ConstraintChain& chain() const;
+    glm::dmat4 jointToModel(std::size_t place) const; ///< place: in the chain
 
     const AnimationSet* _set;
     std::unique_ptr<ConstraintGoals>* _goals;
     Result<std::size_t> _index;
+    Instruction _instruction;
 };
 
 } // namespace osgGpuAnimation

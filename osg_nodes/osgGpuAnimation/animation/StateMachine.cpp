@@ -7,6 +7,17 @@
 namespace osgGpuAnimation
 {
 
+namespace
+{
+
+Error noneNamed(const std::string& what, const std::string& name, const std::vector<std::string>& names)
+{
+    return Error{"there is no " + what + " \"" + name + "\"; the " + what + "s are " +
+                 quotedNames(names, [](const std::string& known) { return known; })};
+}
+
+} // namespace
+
 StateMachine::StateMachine(std::shared_ptr<const StateGraph> graph, std::size_t layer)
     : _graph(std::move(graph)), _layer(layer)
 {
@@ -27,20 +38,21 @@ double StateMachine::value(const std::string& parameter) const
     return index < _values.size() ? _values[index] : 0.0;
 }
 
-bool StateMachine::set(const std::string& parameter, double value)
+Result<void> StateMachine::set(const std::string& parameter, double value)
 {
     const std::size_t index = StateGraph::indexOf(parameter, _graph->parameters());
-    if (index == _values.size() || std::isnan(value)) return false;
+    if (index == _values.size()) return noneNamed("parameter", parameter, _graph->parameters());
+    if (std::isnan(value)) return Error{"parameter \"" + parameter + "\": its value is nan"};
     _values[index] = value;
-    return true;
+    return {};
 }
 
-bool StateMachine::fire(const std::string& trigger)
+Result<void> StateMachine::fire(const std::string& trigger)
 {
     const std::size_t index = StateGraph::indexOf(trigger, _graph->triggers());
-    if (index == _isFired.size()) return false;
+    if (index == _isFired.size()) return noneNamed("trigger", trigger, _graph->triggers());
     _isFired[index] = true;
-    return true;
+    return {};
 }
 
 bool StateMachine::update(AnimationController& controller, double seconds)

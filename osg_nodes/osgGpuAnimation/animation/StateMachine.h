@@ -29,11 +29,13 @@ public:
     double secondsInState() const { return _seconds; }                         ///< seconds since the state was entered
     double value(const std::string& parameter) const; ///< initially 0; 0 if there is no such parameter
 
-    /// Sets a parameter; update() passes it to the blend space and the ground speed of the current state. False,
-    /// without a change, if the graph does not use the parameter or the value is NaN.
-    bool set(const std::string& parameter, double value);
-    /// Fires a trigger: it stays fired until a transition that uses it is taken. False if no condition uses it.
-    bool fire(const std::string& trigger);
+    /// Sets a parameter; update() passes it to the blend space and the ground speed of the current state. Errors,
+    /// without a change: the graph does not use the parameter, and the message lists those that it uses; the value is
+    /// NaN.
+    Result<void> set(const std::string& parameter, double value);
+    /// Fires a trigger: it stays fired until a transition that uses it is taken. Error: no condition uses it; the
+    /// message lists the triggers.
+    Result<void> fire(const std::string& trigger);
 
     /// The first call plays the start state. Each later call takes at most one transition: the first in the order of
     /// the graph that starts at the current state and whose conditions are all true. Returns true if the state changed.

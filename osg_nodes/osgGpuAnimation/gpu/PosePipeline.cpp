@@ -99,11 +99,18 @@ SetResources& PosePipeline::Parts::resourcesOf(const PoseBatch& batch)
     const std::size_t keyframeTexels = keyframes.texels().size();
     const std::size_t entryTexels = set.paletteSize() * POSE_TEXELS_PER_ENTRY;
     if (std::max(keyframeTexels, entryTexels) <= options.maxTexels)
+    {
         resources.buffers = std::make_unique<AnimationBuffers>(*context.gl, set, keyframes);
-    else
-        OSG_WARN << "osgGpuAnimation: an animation set needs buffers of " << keyframeTexels
-                 << " texels (keyframes) and " << entryTexels << " (palette entries), this context takes at most "
-                 << options.maxTexels << "; its characters are not drawn" << std::endl;
+        return resources;
+    }
+    const auto isExact = [](const Clip& clip) { return !clip.compactTracks(); };
+    const bool mayBeSmaller =
+        entryTexels <= options.maxTexels && std::any_of(set.clips().begin(), set.clips().end(), isExact);
+    OSG_WARN << "osgGpuAnimation: an animation set needs buffers of " << keyframeTexels << " texels (keyframes) and "
+             << entryTexels << " (palette entries), this context takes at most " << options.maxTexels
+             << "; its characters are not drawn"
+             << (mayBeSmaller ? "; the option compact=1e-4, or compactClips(), makes the keyframes smaller" : "")
+             << std::endl;
     return resources;
 }
 

@@ -9,6 +9,7 @@
 #include <osgGpuAnimation/frame/stage/LodSelection.h>
 #include <osgGpuAnimation/frame/stage/PoseStage.h>
 #include <osgGpuAnimation/looks/shading/ViewLights.h>
+#include <osgGpuAnimation/mesh/geometry/MeshNames.h>
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/mesh/geometry/PosedMesh.h>
 #include <osgGpuAnimation/nodes/callbacks/WorldTargets.h>
@@ -138,17 +139,24 @@ bool AnimatedCharacter::wears(const std::string& identifier) const
     return !identifier.empty() && std::any_of(_children.begin(), _children.end(), isPart);
 }
 
-bool AnimatedCharacter::takeOff(const osg::Node* garment)
+Result<void> AnimatedCharacter::takeOff(const osg::Node* garment)
 {
-    if (!garment) return false;
+    if (!garment) return Error{"there is no garment to take off"};
     AnimatedCharacter* source = findCharacter(const_cast<osg::Node&>(*garment));
     const std::string identifier =
         source ? _wardrobe->identifierOf(*source, wornMeshes(*source)) : Wardrobe::identifierOf(*garment);
-    if (!wears(identifier)) return false;
+    if (!wears(identifier))
+    {
+        std::vector<std::string> worn;
+        for (const osg::ref_ptr<osg::Node>& child : _children)
+            if (!Wardrobe::identifierOf(*child).empty()) worn.push_back(nodeNameOf(*child));
+        return Error{"the character does not wear \"" + garment->getName() + "\"; the meshes of its garments are " +
+                     quotedNames(worn, [](const std::string& name) { return name; })};
+    }
     for (unsigned int child = getNumChildren(); child-- > 0;)
         if (Wardrobe::identifierOf(*getChild(child)) == identifier) removeChild(child);
     useOutfit(Wardrobe::withoutUnused(_controller->sharedSet(), *this));
-    return true;
+    return {};
 }
 
 /// Takes a set that the present meshes fit. Clones share the meshes, so their boxes only grow.

@@ -142,8 +142,9 @@ public:
     Result<WornGarment> wear(osg::Node* garment);
     /// Removes the meshes of a garment, and the palette entries that only the garments put on last have needed.
     /// garment: that of wear(), of this character or a clone of it, or a clone of the garment; or one of the garment's
-    /// meshes below this node, as hits and CharacterMeshes::find() name them. False: this character does not wear it.
-    bool takeOff(const osg::Node* garment);
+    /// meshes below this node, as hits and CharacterMeshes::find() name them. Error: this character does not wear it;
+    /// the message lists the meshes of the garments that it wears.
+    Result<void> takeOff(const osg::Node* garment);
 
     /// A mesh below this node in the present pose, in the character's own space. The CPU twin computes it, and the
     /// result is kept until the pose changes. Intersectors test it in place of the mesh. withNormals: with normals and

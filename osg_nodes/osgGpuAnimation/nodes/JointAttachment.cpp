@@ -100,7 +100,8 @@ void JointAttachment::resolve(const Host& host)
     if (_resolvedJoint >= 0 || _hasWarned) return;
     _hasWarned = true;
     OSG_WARN << "osgGpuAnimation: an attachment follows joint " << nameOfJoint(_jointName, _joint) << ", but \""
-             << host.name() << "\" has none such among its " << host.set()->skeleton().jointCount()
+             << host.name() << "\" has none such; its " << host.set()->skeleton().jointCount() << " joints are "
+             << quotedNames(host.set()->skeleton().joints(), [](const Joint& joint) { return joint.name; })
              << "; it stays at the character's origin" << std::endl;
 }
 

@@ -28,16 +28,24 @@ Result<void> NodeConstraint::setTarget(const osg::Vec3d& position)
 
 Result<void> NodeConstraint::setWorldTarget(const osg::Vec3d& position)
 {
-    Result<void> taken = setTarget(position * osg::Matrixd::inverse(_spaceToWorld));
-    if (taken) _worldTargets->set(_instance, _name, {nullptr, false, position});
-    return taken;
+    return keep(nullptr, position, std::nullopt);
 }
 
-Result<void> NodeConstraint::follow(osg::Node* node, const osg::Vec3d& position)
+Result<void> NodeConstraint::follow(osg::Node* node, const osg::Vec3d& position,
+                                    const std::optional<osg::Quat>& rotation)
 {
     if (!node) return Error{"constraint \"" + _name + "\": there is no node to follow"};
-    Result<void> taken = setTarget(position * toWorld(*node, true) * osg::Matrixd::inverse(_spaceToWorld));
-    if (taken) _worldTargets->set(_instance, _name, {node, true, position});
+    return keep(node, position, rotation);
+}
+
+Result<void> NodeConstraint::keep(osg::Node* node, const osg::Vec3d& position, const std::optional<osg::Quat>& rotation)
+{
+    if (!_controller) return CrowdInstances::noInstance();
+    const WorldTargets::Target target{node, node != nullptr, position, rotation};
+    const osg::Matrixd place = node ? toWorld(*node, true) : osg::Matrixd();
+    Result<void> taken =
+        setPlace(_controller->constraint(_name), target, place * osg::Matrixd::inverse(_fileToSpace * _spaceToWorld));
+    if (taken) _worldTargets->set(_instance, _name, target);
     return taken;
 }
 
@@ -62,12 +70,10 @@ Result<void> NodeConstraint::setTwist(double radians)
 Result<void> NodeConstraint::setRotation(const osg::Quat& rotation)
 {
     if (!_controller) return CrowdInstances::noInstance();
-    osg::Vec3d translation, scale;
-    osg::Quat turn, scaleAxes;
-    _fileToSpace.decompose(translation, turn, scale, scaleAxes);
-    const osg::Quat inFile = rotation * turn.inverse();
-    return _controller->constraint(_name).setRotation(
-        glm::vec4(glm::dvec4(inFile.x(), inFile.y(), inFile.z(), inFile.w())));
+    Result<void> taken =
+        _controller->constraint(_name).setRotation(toGlm(rotation, osg::Matrixd::inverse(_fileToSpace)));
+    if (taken) _worldTargets->removeRotation(_instance, _name);
+    return taken;
 }
 
 Result<void> NodeConstraint::clear()
@@ -75,6 +81,23 @@ Result<void> NodeConstraint::clear()
     if (!_controller) return CrowdInstances::noInstance();
     _worldTargets->remove(_instance, _name);
     return _controller->constraint(_name).clear();
+}
+
+Result<double> NodeConstraint::getDistance() const
+{
+    return _controller ? _controller->constraint(_name).distance(glm::dmat3(glm::make_mat4(_fileToSpace.ptr())))
+                       : CrowdInstances::noInstance();
+}
+
+Result<double> NodeConstraint::getReach() const
+{
+    return _controller ? _controller->constraint(_name).reach(glm::dmat3(glm::make_mat4(_fileToSpace.ptr())))
+                       : CrowdInstances::noInstance();
+}
+
+bool NodeConstraint::isReached() const
+{
+    return _controller && _controller->constraint(_name).isReached();
 }
 
 } // namespace osgGpuAnimation

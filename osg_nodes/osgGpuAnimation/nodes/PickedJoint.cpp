@@ -40,13 +40,13 @@ template <typename Intersection>
 std::optional<PickedJoint> pick(const Intersection& hit)
 {
     PickedJoint picked;
-    picked.mesh = dynamic_cast<const SkinnedGeometry*>(hit.drawable.get());
+    picked.mesh = dynamic_cast<SkinnedGeometry*>(hit.drawable.get());
     if (!picked.mesh) return std::nullopt;
     const std::optional<AnimatedCrowd::Instance> instance = instanceOf(hit);
-    for (const osg::Node* node : hit.nodePath)
+    for (osg::Node* node : hit.nodePath)
     {
-        const auto* crowd = instance ? dynamic_cast<const AnimatedCrowd*>(node) : nullptr;
-        const auto* character = instance ? nullptr : dynamic_cast<const AnimatedCharacter*>(node);
+        auto* crowd = instance ? dynamic_cast<AnimatedCrowd*>(node) : nullptr;
+        auto* character = instance ? nullptr : dynamic_cast<AnimatedCharacter*>(node);
         if (crowd) picked.crowd = crowd;
         if (character) picked.character = character;
     }

@@ -16,17 +16,20 @@ namespace osgGpuAnimation
 /// The mesh that an intersector has hit, with the joint that moves the hit point most.
 ///
 ///     if (auto picked = jointOf(ray->getFirstIntersection()))
+///     {
 ///         std::cout << picked->set->skeleton().joint(picked->joint).name << std::endl;
+///         if (picked->character) picked->character->getController().crossfade("Hit", 0.1);
+///     }
 ///
 /// The pointers are borrowed from the nodes and valid as long as those exist.
 struct PickedJoint
 {
-    const AnimatedCharacter* character = nullptr; ///< null: the hit is in a crowd
-    const AnimatedCrowd* crowd = nullptr;         ///< null: the hit is in a character
-    AnimatedCrowd::Instance instance = 0;         ///< of the crowd, if any
-    const SkinnedGeometry* mesh = nullptr;        ///< never null
-    const AnimationSet* set = nullptr;            ///< of the character or crowd, never null
-    std::size_t joint = 0;                        ///< index in the skeleton of the set
+    AnimatedCharacter* character = nullptr; ///< null: the hit is in a crowd
+    AnimatedCrowd* crowd = nullptr;         ///< null: the hit is in a character
+    AnimatedCrowd::Instance instance = 0;   ///< of the crowd, if any
+    SkinnedGeometry* mesh = nullptr;        ///< never null; clones of the character share it
+    const AnimationSet* set = nullptr;      ///< of the character or crowd, never null
+    std::size_t joint = 0;                  ///< index in the skeleton of the set
 };
 
 /// The joint with the largest sum of weights at the corners of the hit triangle, each multiplied by the corner's share

@@ -225,12 +225,10 @@ void FeetState::aim(AnimatedCharacter& character, const osg::Matrixd& nodeToWorl
     const osg::Matrixd worldToFile = osg::Matrixd::inverse(character.getFileToNode() * nodeToWorld);
     for (std::size_t i = 0; i < _feet.size(); ++i)
     {
-        const osg::Matrixd ankle = _feet[i].target() * worldToFile;
-        const osg::Quat turn = rotationOf(ankle).getRotate();
+        const WorldTargets::Target ankle{nullptr, false, {}, osg::Quat()};
         ConstraintHandle constraint = character.getController().constraint(legs->legs[i].constraint);
         // The controller refuses positions that are not finite: the previous target remains.
-        if (!constraint.setTarget(toGlm(ankle.getTrans()))) continue;
-        static_cast<void>(constraint.setRotation(glm::vec4(glm::dvec4(turn.x(), turn.y(), turn.z(), turn.w()))));
+        if (!setPlace(constraint, ankle, _feet[i].target() * worldToFile)) continue;
         static_cast<void>(constraint.setWeight(static_cast<float>(weight)));
         _hasTargets = true;
     }

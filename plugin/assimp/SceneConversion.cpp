@@ -186,7 +186,7 @@ void SceneWriter::addMeshes(std::size_t number, MeshWriter& meshes)
         const std::optional<WrittenMesh> written = meshes.write(group, number);
         if (!written) continue;
         const bool isTaken = _writer.document["nodes"][number].contains("mesh");
-        const std::size_t drawn = isTaken ? addChild(number, group.front()->mName.C_Str()) : number;
+        const std::size_t drawn = isTaken ? addChild(number, node.mName.C_Str()) : number;
         json& made = _writer.document["nodes"][drawn];
         made["mesh"] = written->mesh;
         if (written->skin) made["skin"] = *written->skin;

@@ -12,6 +12,7 @@
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/looks/shading/PunctualLight.h>
 #include <osgGpuAnimation/mesh/geometry/MaterialVariants.h>
+#include <osgGpuAnimation/mesh/geometry/MeshNames.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
@@ -454,14 +455,14 @@ void SceneExporter::writeGeometries()
     for (const PlacedGeometry& each : _plain)
     {
         const auto [number, isNew] =
-            known.try_emplace({{each.place, each.isHidden}, each.geometry->getName()}, meshes.size());
+            known.try_emplace({{each.place, each.isHidden}, meshNameOf(*each.geometry)}, meshes.size());
         if (isNew) meshes.emplace_back(Place(each.place, each.isHidden), Parts());
         meshes[number->second].second.emplace_back(each.geometry, each.state.get());
     }
     std::map<Parts, std::optional<std::size_t>> written;
     for (const auto& [place, parts] : meshes)
     {
-        const std::string& name = parts.front().first->getName();
+        const std::string name = meshNameOf(*parts.front().first);
         const auto [number, isNew] = written.try_emplace(parts);
         if (isNew)
         {

@@ -254,6 +254,7 @@ osg::ref_ptr<SkinnedGeometry> skinnedMesh(const RigMesh& mesh, const AnimationSe
     const osg::Geometry& source = rig && rig->getSourceGeometry() ? *rig->getSourceGeometry() : *mesh.geometry;
     osg::ref_ptr<SkinnedGeometry> made = new SkinnedGeometry;
     made->setName(mesh.geometry->getName().empty() ? source.getName() : mesh.geometry->getName());
+    if (made->getName().empty()) made->setName(mesh.geometry->getParent(0)->getName());
     if (!copyArrays(source, *made))
         warnings.push_back("mesh \"" + made->getName() +
                            "\": a primitive set is missing or has indices beyond its vertices; left out");

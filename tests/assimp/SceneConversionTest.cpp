@@ -411,6 +411,34 @@ TEST_F(SceneConversionTest, keysAscend)
         EXPECT_NEAR(gltf::ModelVertices(model, 0, time).positions(model.primitives[0])[0].y, height, 1e-3) << time;
 }
 
+// Each has its own skin, and so a node of the glTF.
+TEST_F(SceneConversionTest, allSkinnedMeshesOfANodeHaveItsName)
+{
+    aiMesh* const other = triangle();
+    other->mName = "Lining";
+    delete[] scene.mMeshes;
+    scene.mNumMeshes = 2;
+    scene.mMeshes = arrayOf({mesh, other});
+    delete[] flag->mMeshes;
+    flag->mNumMeshes = 2;
+    flag->mMeshes = new unsigned int[2]{0, 1};
+    for (aiMesh* const each : {mesh, other})
+    {
+        aiBone* const bone = new aiBone;
+        bone->mName = each == mesh ? "Root" : "Flag";
+        bone->mNumWeights = 3;
+        bone->mWeights = new aiVertexWeight[3]{{0, 1.0f}, {1, 1.0f}, {2, 1.0f}};
+        each->mNumBones = 1;
+        each->mBones = arrayOf({bone});
+    }
+    const gltf::ImportedModel model = imported();
+    ASSERT_EQ(model.primitives.size(), 2u);
+    EXPECT_NE(model.primitives[0].geometry, model.primitives[1].geometry);
+    for (const gltf::ImportedPrimitive& part : model.primitives)
+        EXPECT_EQ(part.geometry->getName(), "Flag");
+    EXPECT_EQ(model.character->getMeshes().find("Lining"), model.primitives[1].geometry);
+}
+
 } // namespace
 
 } // namespace osgGpuAnimation

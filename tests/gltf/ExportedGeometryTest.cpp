@@ -5,6 +5,7 @@
 #include "serializers/RoundTrip.h"
 
 #include <osgGpuAnimation/looks/shading/PunctualLight.h>
+#include <osgGpuAnimation/mesh/geometry/MeshNames.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 #include <osgGpuAnimation/nodes/properties/AnimatedProperties.h>
@@ -212,8 +213,8 @@ TEST(ExportedGeometryTest, influencesAreThoseThatGltfAllows)
     (*doubled)[1] *= 2.0f;
     osg::ref_ptr<osg::Vec4usArray> entries = new osg::Vec4usArray(*skinned.getEntries(0));
     skinned.setInfluences(0, entries, doubled);
-    made = exported(*model.root,
-                    {"mesh \"" + skinned.getName() + "\": the weights of 1 vertices do not sum to 1; they are scaled"});
+    made = exported(*model.root, {"mesh \"" + meshNameOf(skinned) +
+                                  "\": the weights of 1 vertices do not sum to 1; they are scaled"});
     expectNumbers(sums(), {0.625, 0.375, 0.5, 0.5, 0.25, 0.75});
 }
 

@@ -109,8 +109,8 @@ TEST(ExportedPartsTest, namesOfNodesHiddenMeshesAndTheMatrixComeBack)
     {
         const SkinnedGeometry* const mesh = findCharacter(*read)->getMeshes().find(name);
         ASSERT_TRUE(mesh) << name;
-        EXPECT_EQ(mesh->getName(), "Mesh");
-        EXPECT_EQ(nodeNameOf(*mesh), name);
+        EXPECT_EQ(mesh->getName(), name);
+        EXPECT_EQ(meshNameOf(*mesh), "Mesh");
         EXPECT_EQ(mesh->getNodeMask() == 0, isHidden) << name;
     }
 }

@@ -356,14 +356,14 @@ TEST(GarmentTest, showsVariantsOfItsMaterials)
 TEST(MeshNamesTest, nodesAreFoundBeforeMeshes)
 {
     const osg::ref_ptr<AnimatedCharacter> body = makeBody();
-    for (const char* name : {"Plane", "Sword", "Cube"})
+    for (const auto& [node, mesh] :
+         {std::pair("Sword", "Plane"), std::pair("Cube", "Sword"), std::pair("Cube", "Cube")})
     {
-        body->addChild(makeShownTube(body->getAnimationSet()));
-        body->getChild(body->getNumChildren() - 1)->setName(name);
+        const osg::ref_ptr<SkinnedGeometry> part = makeShownTube(body->getAnimationSet());
+        part->setName(node);
+        setMeshName(*part, mesh);
+        body->addChild(part);
     }
-    setNodeName(*body->getChild(1), "Sword");
-    setNodeName(*body->getChild(2), "Cube");
-    setNodeName(*body->getChild(3), "Cube");
     const std::pair<const char*, osg::Node*> found[] = {{"arm", body->getChild(0)},
                                                         {"Sword", body->getChild(1)},
                                                         {"Cube", body->getChild(2)},

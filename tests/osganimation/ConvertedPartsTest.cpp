@@ -121,12 +121,16 @@ TEST(ConvertedPartsTest, statesMasksAndPlacesComeAlong)
     const osg::ref_ptr<osg::Geode> cuff = SmallRig::rigged("cuff", source, "upper");
     cuff->getDrawable(0)->setStateSet(nullptr);
     rig.skeleton->addChild(cuff);
+    const osg::ref_ptr<osg::Geode> glove = SmallRig::rigged("", triangle(""), "lower");
+    glove->setName("glove");
+    rig.skeleton->addChild(glove);
     const osg::ref_ptr<AnimatedCharacter> character = converted(rig);
     ASSERT_TRUE(character);
     EXPECT_EQ(character->getNodeMask(), 0x6u);
     const SkinnedGeometry* const meshes[] = {meshNamed(*character, "coloured"), meshNamed(*character, "plain"),
                                              meshNamed(*character, "cuff")};
     ASSERT_TRUE(meshes[0] && meshes[1] && meshes[2]);
+    EXPECT_TRUE(meshNamed(*character, "glove")) << "its Geode's name";
     EXPECT_TRUE(meshes[0]->getColorArray());
     EXPECT_FALSE(meshes[1]->getColorArray()) << "the fixed pipeline does not show them";
     EXPECT_TRUE(meshes[2]->getStateSet()->getMode(GL_BLEND) & osg::StateAttribute::ON) << "the source's own state";

@@ -75,10 +75,8 @@ public:
         for (unsigned int i = 0; i < whole->getNumChildren(); ++i)
         {
             const auto& mesh = dynamic_cast<const SkinnedGeometry&>(*whole->getChild(i));
-            std::string node = mesh.getName();
-            (void)mesh.getUserValue("osgGpuAnimation.node", node);
-            const SkinnedGeometry* other = dressed.getMeshes().find(node);
-            EXPECT_NE(other, nullptr) << node;
+            const SkinnedGeometry* other = dressed.getMeshes().find(mesh.getName());
+            EXPECT_NE(other, nullptr) << mesh.getName();
             if (!other) continue;
             largest = std::max(largest, largestDistance(*whole->getPosedMesh(mesh), *dressed.getPosedMesh(*other)));
         }

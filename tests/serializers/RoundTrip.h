@@ -4,6 +4,7 @@
 #include "gltf/Export.h"
 #include "gltf/Import.h"
 
+#include <osgGpuAnimation/mesh/geometry/MeshNames.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 
@@ -62,7 +63,7 @@ public:
         if (!vertices) return;
         const osg::Matrixd toScene = osg::computeLocalToWorld(getNodePath());
         for (const osg::Vec3& vertex : *vertices)
-            points["mesh " + drawable.getName() + ", " + std::to_string(vertices->size())].push_back(
+            points["mesh " + meshNameOf(drawable) + ", " + std::to_string(vertices->size())].push_back(
                 osg::Vec3d(vertex) * toScene);
     }
 

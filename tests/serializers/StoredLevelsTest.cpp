@@ -167,8 +167,8 @@ protected:
 };
 
 const FaultCase faults[] = {
-    {"another vertex", "(Vec3Array [^]*?vector 144 .*\n *)[^ ]+", "$1 0.25", "mesh \"mesh0\" are made anew: its vert"},
-    {"another checksum", "Checksum -?[0-9]+", "Checksum 12", "mesh \"mesh0\" are made anew: its vertices or primit"},
+    {"another vertex", "(Vec3Array [^]*?vector 144 .*\n *)[^ ]+", "$1 0.25", "mesh \"upper\" are made anew: its vert"},
+    {"another checksum", "Checksum -?[0-9]+", "Checksum 12", "mesh \"upper\" are made anew: its vertices or primit"},
     {"a list too few", "Levels 1 \\{\\s*Steps", "Levels 2 {\nSteps 0 {\n}\nSteps", "2 lists of levels for 1 primi"},
     {"no list", "(Checksum [^ ]+\\s*)Levels 1 \\{[^]*?(Indices [^]*?\\}\\s*)+\\}\\s*\\}", "$1Levels 0 {\n}", "0 lists"},
     {"the same level twice", "Step (-?[0-9]+)([^]*?)Step -?[0-9]+", "Step $1$2Step $1", "primitive set 0, step 1: lev"},

@@ -25,6 +25,10 @@ class VariantMeshes;
 ///     shoe->getMeshes().setVariant("midnight");
 ///     crowd->getMeshes().setPixelError(0.5f);
 ///
+/// Each primitive of a glTF file is a mesh here (glTF 2.0, section 3.7.4). It has the name of the file's node; of the
+/// file's mesh if the node has none. Its StateSet has the name of its material. The name of the file's mesh, where it
+/// is another one, is the user value "osgGpuAnimation.mesh" (std::string).
+///
 /// Changes belong in the update traversal or between frames, and not into the cull of a crowd.
 class CharacterMeshes
 {
@@ -33,13 +37,13 @@ public:
     CharacterMeshes& operator=(const CharacterMeshes&) = delete;
     ~CharacterMeshes();
 
-    /// The first mesh among the node's children that a node of that name shows in the file; if there is none, the first
-    /// mesh of that name. Null: neither exists. Clones share it.
+    /// The first mesh of that name among the node's children; if there is none, the first one of that name of the
+    /// file's mesh. Null: neither exists. Clones share it.
     SkinnedGeometry* find(const std::string& name) const;
-    /// Shows or hides the meshes of a node of the file, or if there is no such node, of that name. Clones show meshes
-    /// of their own: a direct child that changes is replaced by another drawable over the same arrays, as with material
-    /// variants. Bounds do not change. With a pixel error of a crowd, call setPixelError() again: it creates the levels
-    /// of detail of what is visible now. Error: there is no such mesh; the message lists the nodes' names.
+    /// Shows or hides all meshes of that name; if there are none, those of that name of the file's mesh. Clones show
+    /// meshes of their own: a direct child that changes is replaced by another drawable over the same arrays, as with
+    /// material variants. Bounds do not change. With a pixel error of a crowd, call setPixelError() again: it creates
+    /// the levels of detail of what is visible now. Error: there is no such mesh; the message lists the names.
     Result<void> setVisible(const std::string& name, bool isVisible);
 
     /// Shows the meshes in a variant of the file's materials (glTF: KHR_materials_variants), whose maps the import has

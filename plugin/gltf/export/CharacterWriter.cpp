@@ -63,8 +63,8 @@ void CharacterWriter::addGroups(const AnimationSet& set, const std::vector<Chara
 {
     for (const CharacterMesh& each : meshes)
     {
-        Group group{each.mesh->getName(),
-                    nodeNameOf(*each.mesh),
+        Group group{meshNameOf(*each.mesh),
+                    each.mesh->getName(),
                     carrierOf(set, *each.mesh),
                     -1,
                     each.mesh->getMorphTargets().empty() ? -1 : each.mesh->getMorph(),

@@ -58,10 +58,10 @@ private:
     /// Meshes with one node.
     struct Group
     {
-        std::string name;     ///< of the mesh
-        std::string nodeName; ///< see nodeNameOf()
-        int joint = -1;       ///< carries it; -1: skinned
-        int skin = -1;        ///< index of _skins
+        std::string name; ///< of the mesh
+        std::string nodeName;
+        int joint = -1; ///< carries it; -1: skinned
+        int skin = -1;  ///< index of _skins
         int morph = -1;
         std::size_t targets = 0;
         bool isHidden = false;

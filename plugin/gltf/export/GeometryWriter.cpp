@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/animation/bounds/TransformBound.h>
 #include <osgGpuAnimation/mesh/geometry/MaterialVariants.h>
+#include <osgGpuAnimation/mesh/geometry/MeshNames.h>
 #include <osgGpuAnimation/mesh/geometry/PrimitiveRange.h>
 
 #include <layout.glsl>
@@ -453,7 +454,7 @@ json GeometryWriter::primitivesOf(const osg::Geometry& geometry, const osg::Stat
 {
     json primitives = json::array();
     if (_writer.isFull()) return primitives; // GlbWriter::glb() refuses it
-    _label = "mesh " + quoted(geometry.getName());
+    _label = "mesh " + quoted(meshNameOf(geometry));
     const osg::Array* const positions = geometry.getVertexArray();
     const std::size_t vertices = positions ? positions->getNumElements() : 0;
     if (vertices == 0 || numbersOf(positions, 3).empty())

@@ -7,6 +7,7 @@
 
 #include <osgGpuAnimation/animation/bounds/JointRange.h>
 #include <osgGpuAnimation/mesh/geometry/MaterialVariants.h>
+#include <osgGpuAnimation/mesh/geometry/MeshNames.h>
 
 #include <layout.glsl>
 
@@ -125,8 +126,8 @@ osg::ref_ptr<osg::Geometry> Drawables::make(const DrawablePlace& place)
     const std::size_t bytesAVertex = (place.skin >= 0 ? bytesAnInfluencedVertex : 0) +
                                      (place.morph >= 0 ? mesh->targets.size() * bytesAMorphedVertex : 0);
     const std::vector<int> visibility = _tree.visibilityWith(place.visibility);
-    const std::size_t bytes =
-        mesh->positions->size() * bytesAVertex + bytesADrawable + visibility.size() * bytesAVisibility;
+    const std::size_t bytes = mesh->positions->size() * bytesAVertex + bytesADrawable +
+                              visibility.size() * bytesAVisibility + place.name.size() + sourceMesh.name.size();
     if (!_budget.take(bytes))
     {
         _report.warn(mesh->label + ": it would take " + std::to_string(bytes) + " bytes, " + _budget.limitText() +
@@ -135,7 +136,9 @@ osg::ref_ptr<osg::Geometry> Drawables::make(const DrawablePlace& place)
     }
     osg::ref_ptr<SkinnedGeometry> skinned = palette ? new SkinnedGeometry : nullptr;
     osg::ref_ptr<osg::Geometry> geometry = palette ? skinned.get() : new osg::Geometry;
-    geometry->setName(sourceMesh.name);
+    // Where the node does not move, its transform has the name.
+    if (palette) geometry->setName(place.name.empty() ? sourceMesh.name : std::string(place.name));
+    setMeshName(*geometry, sourceMesh.name);
     geometry->setUseDisplayList(false);
     geometry->setUseVertexBufferObjects(true);
     geometry->setVertexArray(mesh->positions);

@@ -14,6 +14,7 @@
 
 #include <map>
 #include <memory>
+#include <string_view>
 #include <tuple>
 
 namespace osgGpuAnimation::gltf
@@ -31,8 +32,9 @@ struct DrawablePlace
     int visibility = -1;   ///< see NodeTree::visibility
     bool hidden = false;   ///< see NodeTree::hidden
     bool mirrored = false; ///< with a joint: see MaterialUse
+    std::string_view name; ///< of the node if a skin or a joint moves it; empty: that of the mesh serves
 
-    auto key() const { return std::tie(mesh, primitive, skin, joint, morph, visibility, hidden); }
+    auto key() const { return std::tie(mesh, primitive, skin, joint, morph, visibility, hidden, name); }
     bool operator<(const DrawablePlace& other) const { return key() < other.key(); }
 };
 

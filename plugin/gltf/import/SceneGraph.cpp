@@ -10,7 +10,6 @@
 #include "gltf/import/NodeTransform.h"
 
 #include <osgGpuAnimation/animation/bounds/TransformBound.h>
-#include <osgGpuAnimation/mesh/geometry/MeshNames.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/scene/OsgMatrix.h>
 
@@ -106,7 +105,11 @@ DrawablePlace SceneGraphBuilder::placeOf(std::size_t node, int primitive) const
         place.joint = _parts.joints.ofNode[node];
         place.mirrored = _parts.tree.isMirrored(static_cast<int>(node));
     }
-    if (place.skin >= 0 || place.joint >= 0) place.morph = _parts.morphs.ofNode[node];
+    if (place.skin >= 0 || place.joint >= 0)
+    {
+        place.morph = _parts.morphs.ofNode[node];
+        place.name = source.name;
+    }
     place.visibility = _parts.tree.visibility[node];
     place.hidden = _parts.tree.hidden[node];
     return place;
@@ -152,7 +155,6 @@ void SceneGraphBuilder::addMesh(std::size_t node)
         }
         moves = true;
         if (!_inCharacter.insert({_parts.tree.levelOf[node], geometry}).second) continue;
-        if (geometry->getNumParents() == 0) setNodeName(*geometry, source.name);
         addLevel(node, *geometry, *_character, _characterLods);
     }
     if (moves && isInstanced(source))
@@ -187,6 +189,7 @@ void SceneGraphBuilder::addLevel(std::size_t node, osg::Node& child, osg::Group&
     if (!lod)
     {
         lod = new osg::LOD;
+        lod->setName(elementOf(_parts.model.nodes, level.firstNode).name);
         lod->setRangeMode(osg::LOD::PIXEL_SIZE_ON_SCREEN);
         parent.addChild(lod);
     }

@@ -13,19 +13,19 @@ namespace osgGpuAnimation
 namespace
 {
 
-const char* const nodeNameKey = "osgGpuAnimation.node";
+const char* const meshNameKey = "osgGpuAnimation.mesh";
 
 } // namespace
 
-void setNodeName(osg::Object& mesh, const std::string& name)
+void setMeshName(osg::Object& drawable, const std::string& name)
 {
-    if (!name.empty() && name != mesh.getName()) mesh.setUserValue(nodeNameKey, name);
+    if (!name.empty() && name != drawable.getName()) drawable.setUserValue(meshNameKey, name);
 }
 
-std::string nodeNameOf(const osg::Object& mesh)
+std::string meshNameOf(const osg::Object& drawable)
 {
     std::string name;
-    return mesh.getUserValue(nodeNameKey, name) ? name : mesh.getName();
+    return drawable.getUserValue(meshNameKey, name) ? name : drawable.getName();
 }
 
 Result<std::vector<SkinnedGeometry*>> meshesNamed(const osg::Group& group, const std::string& name)
@@ -34,10 +34,9 @@ Result<std::vector<SkinnedGeometry*>> meshesNamed(const osg::Group& group, const
     std::vector<std::string> names;
     const auto sort = [&](const SkinnedGeometry& mesh)
     {
-        const std::string nodeName = nodeNameOf(mesh);
-        if (nodeName == name) ofNode.push_back(const_cast<SkinnedGeometry*>(&mesh));
-        if (mesh.getName() == name) ofMesh.push_back(const_cast<SkinnedGeometry*>(&mesh));
-        if (std::find(names.begin(), names.end(), nodeName) == names.end()) names.push_back(nodeName);
+        if (mesh.getName() == name) ofNode.push_back(const_cast<SkinnedGeometry*>(&mesh));
+        if (meshNameOf(mesh) == name) ofMesh.push_back(const_cast<SkinnedGeometry*>(&mesh));
+        if (std::find(names.begin(), names.end(), mesh.getName()) == names.end()) names.push_back(mesh.getName());
     };
     forEachMesh(group, sort);
     if (!ofNode.empty()) return ofNode;

@@ -12,14 +12,14 @@
 namespace osgGpuAnimation
 {
 
-/// Names a drawable after the node of the file that shows it. The name is a user value, so that OSG's own serializers
-/// store it and copies share it; the drawable's own name is that of the file's mesh. Empty or equal to that: no value.
-void setNodeName(osg::Object& mesh, const std::string& name);
-/// The drawable's own name if no node's name is known.
-std::string nodeNameOf(const osg::Object& mesh);
+/// Stores the name of the file's mesh where the drawable has another name: names in the graph are those of the file's
+/// nodes. It is a user value, so that OSG's own serializers store it and copies share it.
+void setMeshName(osg::Object& drawable, const std::string& name);
+/// The name of the file's mesh; the drawable's own name if no other is stored.
+std::string meshNameOf(const osg::Object& drawable);
 
-/// The meshes of the group (see forEachMesh()) of that node's name; if there are none, those of that mesh's name.
-/// Error: there are none; the message lists the nodes' names.
+/// The meshes of the group (see forEachMesh()) of that name; if there are none, those whose mesh in the file has it.
+/// Error: there are none; the message lists the names of the first kind.
 Result<std::vector<SkinnedGeometry*>> meshesNamed(const osg::Group& group, const std::string& name);
 
 } // namespace osgGpuAnimation

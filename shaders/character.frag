@@ -52,7 +52,10 @@ void main()
 #endif
     fragmentColor = color;
 #else
-#if DRAW_ALPHA
+#if DRAW_ALPHA && defined(HOOK_MATERIAL)
+    osgGpuAnimationMaterial(fragmentColor, givenEmission, givenSurface, givenNormal);
+    hostMaterial(fragmentColor, givenEmission, givenSurface, givenNormal);
+#elif DRAW_ALPHA
     fragmentColor = materialBaseColor();
 #else
     fragmentColor = vec4(1.0);

@@ -53,16 +53,21 @@ struct LightSource
     float linearAttenuation;
     float quadraticAttenuation;
 };
-uniform LightSource lightSource[8];
-uniform vec4 lightModelAmbient;
-uniform vec4 materialShine; // the specular colour, the shininess
-uniform vec4 fogColor;
-uniform vec4 fogRange; // density, start, end, 1 / (end - start)
-#define shineColor materialShine
-#define shininess materialShine.a
-#define fogDensity fogRange.x
-#define fogEnd fogRange.z
-#define fogScale fogRange.w
+uniform LightSource coreLights[8];
+uniform vec4 coreAmbient;  // osg::LightModel's
+uniform vec4 coreShine;    // the specular colour, the shininess
+uniform vec4 coreFogColor;
+uniform vec4 coreFogRange; // density, start, end, 1 / (end - start)
+#undef DRAW_SHADOW_MAPS
+#define DRAW_SHADOW_MAPS 0 // osgShadow's have generated texture coordinates
+#define lightSource coreLights
+#define lightModelAmbient coreAmbient
+#define shineColor coreShine
+#define shininess coreShine.a
+#define fogColor coreFogColor
+#define fogDensity coreFogRange.x
+#define fogEnd coreFogRange.z
+#define fogScale coreFogRange.w
 #endif
 
 #ifdef MATERIAL_PBR

@@ -390,19 +390,25 @@ osg::ref_ptr<osg::Node> makeLitScene(bool isPbr, osg::Fog::Mode fogMode)
     return scene;
 }
 
+// The last one is a compatibility profile with OSG's matrix uniforms, as some hosts have it.
 TEST_F(ProfileGLTest, osgsLightsAndFogAreTheSameInTheCoreProfile)
 {
+    const ProfileCase profiles[] = {stock, core, {"Uniforms", 2, "3.3", 0}};
     for (const bool isPbr : {false, true})
         for (const osg::Fog::Mode fog : {osg::Fog::LINEAR, osg::Fog::EXP, osg::Fog::EXP2})
         {
-            osg::ref_ptr<osg::Image> pictures[2];
-            for (const bool isCore : {false, true})
+            osg::ref_ptr<osg::Image> expected;
+            for (const ProfileCase& profile : profiles)
             {
-                if (!changeTo(isCore ? core : stock)) return;
-                pictures[isCore ? 1 : 0] = pictureOf(makeLitScene(isPbr, fog));
+                if (!changeTo(profile)) return;
+                state().setUseModelViewAndProjectionUniforms(profile.profileMask != 0);
+                state().setUseVertexAttributeAliasing(profile.profileMask != 0);
+                const osg::ref_ptr<osg::Image> found = pictureOf(makeLitScene(isPbr, fog));
                 EXPECT_GT(picture().pixelsDrawn(), 800);
+                if (!expected) expected = found;
+                EXPECT_EQ(Picture::pixelsDifferent(*expected, *found, 1.5f / 255), 0)
+                    << isPbr << ", " << fog << ", " << profile.name;
             }
-            EXPECT_EQ(Picture::pixelsDifferent(*pictures[0], *pictures[1], 1.5f / 255), 0) << isPbr << ", " << fog;
         }
 }
 

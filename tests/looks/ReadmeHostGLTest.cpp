@@ -6,9 +6,12 @@
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/looks/CharacterProgram.h>
+#include <osgGpuAnimation/looks/Environment.h>
+#include <osgGpuAnimation/looks/PbrMaterial.h>
 #include <osgGpuAnimation/looks/ShaderHook.h>
 
 #include <osg/ColorMask>
+#include <osg/LightSource>
 #include <osg/Material>
 #include <osg/ShapeDrawable>
 
@@ -550,19 +553,77 @@ TEST_F(HostGLTest, hooksOfEachPlaceAreCalled)
     EXPECT_NO_GL_ERROR();
 }
 
-// A panel that writes depths alone hides what is behind it, at twice its width.
-TEST_F(HostGLTest, hooksCountInDepthPasses)
+/// A panel of that material, lit from the side, in a surrounding with tone mapping.
+osg::ref_ptr<osg::Group> makePbrPanel(const PbrMaterial& material)
+{
+    const osg::ref_ptr<AnimatedCharacter> panel = makePanelCharacter();
+    osg::StateSet& state = *panel->getChild(0)->getStateSet();
+    applyPbrMaterial(state, material);
+    state.setTextureMode(0, GL_TEXTURE_2D, osg::StateAttribute::OFF);
+    const osg::ref_ptr<osg::LightSource> light = new osg::LightSource;
+    light->getLight()->setPosition(osg::Vec4(-1, -1, 0.5f, 0));
+    const osg::ref_ptr<Environment> scene = new Environment;
+    scene->setToneMapping(true);
+    scene->addChild(light);
+    scene->addChild(panel);
+    scene->getOrCreateStateSet()->setMode(GL_LIGHTING, on);
+    scene->getStateSet()->setMode(GL_LIGHT0, on);
+    return scene;
+}
+
+// In the light of the kit: a hook that gives a panel the values of another material makes the picture of that one, and
+// the lit colour is linear.
+TEST_F(HostGLTest, hooksOfMaterialsAreBeforeTheLightAndThoseOfLitColorsBeforeTheDisplay)
+{
+    PbrMaterial first, second;
+    second.baseColor.set(0.6f, 0.2f, 0.1f, 1);
+    second.emissive.set(0, 0.1f, 0.3f);
+    second.metallic = 0.25f;
+    second.roughness = 0.5f;
+    const osg::ref_ptr<osg::Image> expected = pictureOf(makePbrPanel(second)), plain = pictureOf(makePbrPanel(first));
+    ASSERT_GT(Picture::pixelsDifferent(*expected, *plain), 300);
+    const auto pictureWith = [&](ShaderHook::Place place, const char* text)
+    {
+        const osg::ref_ptr<osg::Group> scene = makePbrPanel(first);
+        scene->getStateSet()->setAttribute(new ShaderHook(place, text));
+        return pictureOf(scene);
+    };
+    const osg::ref_ptr<osg::Image> hooked = pictureWith(ShaderHook::Place::Material, R"(
+        void hostMaterial(inout vec4 baseColor, inout vec3 emission, inout vec3 metallicRoughnessOcclusion, inout vec3 normal)
+        {
+            baseColor.rgb = vec3(0.6, 0.2, 0.1);
+            emission = vec3(0.0, 0.1, 0.3);
+            metallicRoughnessOcclusion.xy = vec2(0.25, 0.5);
+        })");
+    EXPECT_EQ(Picture::pixelsDifferent(*expected, *hooked, 1.5f / 255), 0);
+    const char* const lit = "void hostLitColor(inout vec4 color) { color.rgb = vec3(0.5); }";
+    const char* const shown = "void hostFinalColor(inout vec4 color) { color.rgb = vec3(0.5); }";
+    // Khronos PBR Neutral takes 0.04 off; 0.46 in sRGB is 0.71.
+    EXPECT_NEAR(Picture::meanColor(*pictureWith(ShaderHook::Place::LitColor, lit)).g(), 0.708f, 0.01f);
+    EXPECT_NEAR(Picture::meanColor(*pictureWith(ShaderHook::Place::FinalColor, shown)).g(), 0.5f, 0.01f);
+    EXPECT_NO_GL_ERROR();
+}
+
+// A panel that writes depths alone hides what is behind it: at twice its width, or not at all where it is moved far
+// away.
+TEST_F(HostGLTest, hooksApplyInDepthPasses)
 {
     const int area = Picture::pixelsDrawn(*pictureOf(makeWhitePanel()));
-    const osg::ref_ptr<osg::Group> panel = makeWhitePanel(), scene = new osg::Group;
-    panel->getStateSet()->setAttribute(new osg::ColorMask(false, false, false, false));
-    panel->getStateSet()->setAttribute(new ShaderHook(placeCases[0].place, placeCases[0].text));
-    const osg::ref_ptr<osg::Geometry> wall =
-        osg::createTexturedQuadGeometry(osg::Vec3(-6, 3, -6), osg::Vec3(12, 0, 0), osg::Vec3(0, 0, 12));
-    wall->getOrCreateStateSet()->setRenderBinDetails(1, "RenderBin");
-    scene->addChild(panel);
-    scene->addChild(wall);
-    EXPECT_NEAR(Picture::pixelsDrawn(*pictureOf(scene)), 2 * area, 0.2 * area);
+    const osg::ref_ptr<ShaderHook> hooks[] = {
+        new ShaderHook(placeCases[0].place, placeCases[0].text),
+        new ShaderHook(ShaderHook::Place::FinalColor, "void hostFinalColor(inout vec4 color) { gl_FragDepth = 1.0; }")};
+    for (const osg::ref_ptr<ShaderHook>& hook : hooks)
+    {
+        const osg::ref_ptr<osg::Group> panel = makeWhitePanel(), scene = new osg::Group;
+        panel->getStateSet()->setAttribute(new osg::ColorMask(false, false, false, false));
+        panel->getStateSet()->setAttribute(hook);
+        const osg::ref_ptr<osg::Geometry> wall =
+            osg::createTexturedQuadGeometry(osg::Vec3(-6, 3, -6), osg::Vec3(12, 0, 0), osg::Vec3(0, 0, 12));
+        wall->getOrCreateStateSet()->setRenderBinDetails(1, "RenderBin");
+        scene->addChild(panel);
+        scene->addChild(wall);
+        EXPECT_NEAR(Picture::pixelsDrawn(*pictureOf(scene)), hook == hooks[0] ? 2 * area : 0, 0.2 * area);
+    }
 }
 
 // A nearer hook replaces a farther one by OSG's rule; one without a text switches it off.

@@ -146,7 +146,7 @@ protected:
         const std::uint8_t lights[] = {0, 1, 0xff}, points[] = {0, 2, 0xff}, maps[] = {0, 4, 0xfe};
         const char* const influences[] = {"", "1", "4", "8"};
         const char* const colors[] = {"", "1", "2"};
-        for (const std::vector<int>& row : pairwise({2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 3, 3, 3, 4, 4, 3, 2, 2, 2}))
+        for (const std::vector<int>& row : pairwise({2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 3, 3, 3, 4, 4, 3, 2, 2, 2, 2}))
         {
             ShaderKey key;
             bool* const flags[] = {&key.isDepthOnly,      &key.isAlphaNeeded,  &key.isLit,         &key.hasFlatNormals,
@@ -164,12 +164,57 @@ protected:
             for (auto define = defines.begin(); define != defines.end();)
                 define = define->second.empty() ? defines.erase(define) : std::next(define);
             i += 2;
-            for (const char* name : {"POSE_NO_MORPHS", "POSE_PLACED", "POSE_TINTED"})
+            for (const char* name : {"POSE_NO_MORPHS", "POSE_PLACED", "POSE_TINTED", "POSE_SKINNED"})
                 if (row[i++] != 0) defines[name] = "1";
-            if (!defines.empty()) defines["POSE_SKINNED"] = "1"; // without it: above a mesh that is not skinned
             link(*permutations.variant(key), defines);
         }
         link(*captureProgram(), {{"POSE_SKINNED", "1"}});
+        for (const char* material : {"", "MATERIAL_PBR"})
+            linkForHosts(permutations, material);
+    }
+
+    /// The kit's program with a hook of each place, and a host's with the kit's light.
+    void linkForHosts(const ShaderPermutations& permutations, const char* material)
+    {
+        const char* const texts[] = {"void hostEyeVertex(inout vec4 vertex, inout vec3 normal) {}",
+                                     "void hostClipVertex(inout vec4 position, vec4 vertex) {}",
+                                     "void hostMaterial(inout vec4 baseColor, inout vec3 emission, inout vec3 "
+                                     "metallicRoughnessOcclusion, inout vec3 normal) {}",
+                                     "void hostLitColor(inout vec4 color) {}",
+                                     "void hostFinalColor(inout vec4 color) {}"};
+        std::vector<osg::ref_ptr<ShaderHook>> hooks;
+        for (unsigned int place = 0; place < ShaderHook::placeCount; ++place)
+            hooks.push_back(new ShaderHook(static_cast<ShaderHook::Place>(place), texts[place]));
+        std::map<std::string, std::string> defines{{"POSE_SKINNED", "1"}};
+        if (*material) defines[material] = "1";
+        for (const bool isDepthOnly : {false, true})
+        {
+            ShaderKey key;
+            key.isDepthOnly = key.isAlphaNeeded = isDepthOnly;
+            for (std::size_t place = 0; place < hooks.size(); ++place)
+                if (!isDepthOnly || hooks[place]->getPlace() != ShaderHook::Place::LitColor)
+                    key.hooks[place] = hooks[place]->getShader();
+            link(*permutations.variant(key), defines);
+        }
+        const osg::ref_ptr<osg::Program> lit = new osg::Program;
+        lit->addShader(surfaceVertexShader());
+        lit->addShader(skinShader());
+        lit->addShader(lightShader());
+        lit->addShader(
+            new osg::Shader(osg::Shader::FRAGMENT,
+                            "#version 140\n"
+                            "vec3 osgGpuAnimationLight(vec3 baseColor, vec3 emission, vec3 surface, vec3 normal);"
+                            "vec3 osgGpuAnimationDisplay(vec3 color); vec3 osgGpuAnimationFog(vec3 color);"
+                            "out vec4 color; void main() { vec3 light = osgGpuAnimationLight(vec3(0.5), "
+                            "vec3(0.0), vec3(0.0, 1.0, 1.0), vec3(0.0, 0.0, 1.0)); "
+                            "color = vec4(osgGpuAnimationFog(osgGpuAnimationDisplay(light)), 1.0); }"));
+        bindSkinAttributes(*lit);
+        for (const char* fog : {"0", "2"})
+        {
+            defines["DRAW_FOG"] = fog;
+            defines["DRAW_SHADOW_MAPS"] = fog;
+            link(*lit, defines);
+        }
     }
 
     /// As osggpuanim composes it.

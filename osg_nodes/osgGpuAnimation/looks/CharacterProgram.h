@@ -8,7 +8,7 @@ namespace osgGpuAnimation
 {
 
 /// The program that draws SkinnedGeometry: skin.glsl, character.vert and character.frag, in permutations by the modes
-/// of the state (ShaderPermutations). All users share one object. A ShaderHook above adds functions of the host's.
+/// of the state (ShaderPermutations). All users share one object. A ShaderHook above adds functions of the host.
 ///
 /// It reproduces the fixed pipeline: OSG's enabled lights with attenuation and spots, osg::LightModel's ambient colour,
 /// osg::Material (diffuse times vertex colour is the base colour, lit or not), fog, clip planes, the texture of unit 0
@@ -55,11 +55,19 @@ osg::ref_ptr<osg::Shader> materialShader();
 ///     vec3 osgGpuAnimationFog(vec3 color);
 ///
 /// The first gives the light that a surface at viewPosition sends to the eye: with the shader define MATERIAL_PBR of
-/// applyPbrMaterial() linear radiance, else the colour of the fixed pipeline. A permutation of the kit's own program
-/// reads the modes of the state; another program has shader defines for them: DRAW_LIGHTS, a bit for each GL_LIGHTi (1
-/// if not defined), DRAW_POINT_LIGHTS, those with a position, and DRAW_SHADOW_MAPS, a bit for each texture unit, 1 to
-/// 7, with a map of osgShadow, DRAW_FOG, 1 to 3 for LINEAR, EXP and EXP2, DRAW_ENCODED, 0 with GL_FRAMEBUFFER_SRGB (all
-/// 0, 0, 0 and 1 if not defined).
+/// applyPbrMaterial() linear radiance, else the colour of the fixed pipeline. The kit's own program reads the modes of
+/// the state; another program has shader defines for them. In a core profile it has a headlight, and no fog.
+///
+/// | define            | value                                                                   | without it |
+/// | ----------------- | ----------------------------------------------------------------------- | ---------- |
+/// | DRAW_LIGHTS       | a bit for each GL_LIGHTi that shines                                    | 1          |
+/// | DRAW_POINT_LIGHTS | a bit for each of them that has a position                              | 0          |
+/// | DRAW_SHADOW_MAPS  | a bit for each texture unit, 1 to 7, with a map of osgShadow            | 0          |
+/// | DRAW_FOG          | 1: LINEAR, 2: EXP, 3: EXP2                                              | 0          |
+/// | DRAW_ENCODED      | 0 with GL_FRAMEBUFFER_SRGB                                              | 1          |
+///
+/// Shadow maps need an int uniform `shadowMaps` of 7 elements with the values 1 to 7, too. Lights of glTF files have no
+/// range and OpenGL's cone.
 osg::ref_ptr<osg::Shader> lightShader();
 /// Binds the attributes of the two vertex shaders to the locations of layout.glsl.
 void bindSkinAttributes(osg::Program& program);

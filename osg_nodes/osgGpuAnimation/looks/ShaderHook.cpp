@@ -37,9 +37,9 @@ constexpr Function functions[ShaderHook::placeCount] = {
 osg::ref_ptr<osg::Shader> shaderOf(const Function& function, const std::string& text)
 {
     static std::mutex mutex;
-    static std::map<std::pair<const char*, std::string>, osg::observer_ptr<osg::Shader>> shaders;
+    static std::map<std::pair<osg::Shader::Type, std::string>, osg::observer_ptr<osg::Shader>> shaders;
     const std::lock_guard<std::mutex> lock(mutex);
-    osg::observer_ptr<osg::Shader>& known = shaders[{function.name, text}];
+    osg::observer_ptr<osg::Shader>& known = shaders[{function.type, text}];
     osg::ref_ptr<osg::Shader> shader;
     if (known.lock(shader)) return shader;
     const bool hasVersion = text.find("#version") != std::string::npos;

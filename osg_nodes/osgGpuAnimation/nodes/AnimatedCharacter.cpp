@@ -9,7 +9,6 @@
 #include <osgGpuAnimation/frame/stage/LodSelection.h>
 #include <osgGpuAnimation/frame/stage/PoseStage.h>
 #include <osgGpuAnimation/looks/shading/ViewLights.h>
-#include <osgGpuAnimation/mesh/geometry/MeshNames.h>
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/mesh/geometry/PosedMesh.h>
 #include <osgGpuAnimation/nodes/callbacks/WorldTargets.h>
@@ -149,7 +148,7 @@ Result<void> AnimatedCharacter::takeOff(const osg::Node* garment)
     {
         std::vector<std::string> worn;
         for (const osg::ref_ptr<osg::Node>& child : _children)
-            if (!Wardrobe::identifierOf(*child).empty()) worn.push_back(nodeNameOf(*child));
+            if (!Wardrobe::identifierOf(*child).empty()) worn.push_back(child->getName());
         return Error{"the character does not wear \"" + garment->getName() + "\"; the meshes of its garments are " +
                      quotedNames(worn, [](const std::string& name) { return name; })};
     }

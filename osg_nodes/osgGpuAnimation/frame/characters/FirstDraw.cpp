@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/gpu/passes/FeedbackTimer.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
+#include <osgGpuAnimation/looks/shading/ViewLights.h>
 #include <osgGpuAnimation/mesh/draw/InstancedDraw.h>
 #include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
@@ -47,7 +48,9 @@ osg::ref_ptr<osg::StateSet> viewState()
 /// True if culling the node adds no state, as that of effects, shadows, surroundings and nested characters does.
 bool isPlain(const osg::Node& node)
 {
-    return node.libraryName() == std::string("osg") && !node.getCullCallback();
+    const osg::Callback* callback = node.getCullCallback();
+    const bool isOfFile = dynamic_cast<const ViewLightsCallback*>(callback) && !callback->getNestedCallback();
+    return node.libraryName() == std::string("osg") && (!callback || isOfFile);
 }
 
 /// True if the frame will draw below these nodes with their state sets and a headlight: all are plain, and no light of

@@ -53,14 +53,14 @@ bool isSetOn(osg::State& state, ModeOf modeOf)
 
 bool isModeOn(osg::State& state, osg::StateAttribute::GLMode mode)
 {
-    if (!hasOwnLights(state)) return state.getLastAppliedMode(mode);
+    if (!state.getUseModelViewAndProjectionUniforms()) return state.getLastAppliedMode(mode);
     return isSetOn(state, [mode](const osg::StateSet& stateSet) { return stateSet.getMode(mode); });
 }
 
 bool isTexturingOn(osg::State& state)
 {
     if (isWhiteTexture(state.getLastAppliedTextureAttribute(0, osg::StateAttribute::TEXTURE))) return false;
-    if (!hasOwnLights(state)) return state.getLastAppliedTextureMode(0, GL_TEXTURE_2D);
+    if (!state.getUseModelViewAndProjectionUniforms()) return state.getLastAppliedTextureMode(0, GL_TEXTURE_2D);
     return isSetOn(state, [](const osg::StateSet& stateSet) { return stateSet.getTextureMode(0, GL_TEXTURE_2D); });
 }
 
@@ -120,14 +120,13 @@ bool isShiny(const osg::State& state)
 std::array<const osg::Light*, ViewLights::lightCount> lightsOf(const osg::State& state)
 {
     std::array<const osg::Light*, ViewLights::lightCount> lights{};
-    const bool isOwn = hasOwnLights(state);
-    const auto placed = isOwn ? ViewLights::of(state) : std::array<ViewLights::Placed, ViewLights::lightCount>();
+    const bool isCore = isCoreProfile(state);
+    const auto placed = isCore ? ViewLights::of(state) : std::array<ViewLights::Placed, ViewLights::lightCount>();
     for (unsigned int index = 0; index < ViewLights::lightCount; ++index)
-        lights[index] = isOwn ? placed[index].light : applied<osg::Light>(state, osg::StateAttribute::LIGHT, index);
+        lights[index] = isCore ? placed[index].light : applied<osg::Light>(state, osg::StateAttribute::LIGHT, index);
     return lights;
 }
 
-/// The fixed pipeline's generated coordinates, which a core profile lacks, are part of osgShadow's maps.
 bool isShadowMap(const osg::State& state, unsigned int unit)
 {
     if (!state.getLastAppliedTextureMode(unit, GL_TEXTURE_GEN_S)) return false;
@@ -160,18 +159,20 @@ ShaderKey::Fog fogOf(osg::State& state)
 
 void readLights(osg::State& state, ShaderKey& surface)
 {
-    surface.lights = 0;
+    const bool isCore = isCoreProfile(state);
     const auto lights = lightsOf(state);
     for (unsigned int index = 0; index < lights.size(); ++index)
     {
         const osg::Light* light = lights[index];
-        if (!isModeOn(state, GL_LIGHT0 + index) || (!light && hasOwnLights(state))) continue;
+        if (isCore && !light) continue;
+        if (isCore ? !isModeOn(state, GL_LIGHT0 + index) : !state.getLastAppliedMode(GL_LIGHT0 + index)) continue;
         const auto bit = static_cast<std::uint8_t>(1u << index);
         surface.lights |= bit;
         if (!light || light->getPosition().w() == 0.0f) continue;
         surface.pointLights |= bit;
         if (dynamic_cast<const PunctualLight*>(light)) surface.punctualLights |= bit;
     }
+    if (isCore) return; // which lacks the generated coordinates of osgShadow's maps
     for (unsigned int unit = 1; unit < generatedUnits; ++unit)
         if (isShadowMap(state, unit)) surface.shadowMaps |= static_cast<std::uint8_t>(1u << unit);
     surface.hasShadowBias = surface.shadowMaps != 0 && hasUniform(state, "osgShadow_ambientBias");
@@ -184,8 +185,8 @@ void readHooks(const osg::State& state, ShaderKey& surface)
     using Place = ShaderHook::Place;
     for (const Place place : {Place::EyeVertex, Place::ClipVertex, Place::Material, Place::LitColor, Place::FinalColor})
     {
-        const bool isOfColor = place == Place::Material || place == Place::LitColor;
-        if (isOfColor && surface.isDepthOnly) continue;
+        if (place == Place::Material && surface.isDepthOnly && !surface.isAlphaNeeded) continue;
+        if (place == Place::LitColor && surface.isDepthOnly) continue;
         surface.hooks[static_cast<std::size_t>(place)] = ShaderHook::applied(state, place);
     }
 }
@@ -379,7 +380,7 @@ void ShaderPermutations::apply(osg::State& state) const
         if (surface.shadowMaps != 0) setShadowUnits(state);
         if (surface.punctualLights != 0) setPunctualLights(state, surface.punctualLights);
         setMaterial(state);
-        if (hasOwnLights(state)) setFixedState(state, surface.lights);
+        if (!surface.isDepthOnly && isCoreProfile(state)) setFixedPipelineUniforms(state, surface.lights);
     }
     // The next StateSet may have other modes with the same program, which OSG would consider applied.
     state.haveAppliedAttribute(osg::StateAttribute::PROGRAM);

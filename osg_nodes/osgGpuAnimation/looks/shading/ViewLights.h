@@ -52,7 +52,7 @@ private:
     osgUtil::RenderStage* _stage = nullptr; ///< it outlives the state graph that has this attribute
 };
 
-/// RAII: what is culled has the ViewLights of its render stage. In a context with the fixed pipeline it does nothing.
+/// RAII: what is culled has the ViewLights of its render stage. Without OSG's matrix uniforms it does nothing.
 class ViewLightsScope
 {
 public:
@@ -81,14 +81,11 @@ protected:
     ~ViewLightsCallback() override = default;
 };
 
-/// True in a core profile: shaders get what the fixed pipeline knows by uniforms.
-inline bool hasOwnLights(const osg::State& state)
-{
-    return state.getUseModelViewAndProjectionUniforms();
-}
+/// True if the context has a core profile. OSG draws there with its matrix uniforms. On the draw side only.
+bool isCoreProfile(const osg::State& state);
 
 /// Sets the uniforms of light.glsl for the core profile in the applied program: lights (a bit for each number), the
 /// ambient light of LightModel, the shine of Material, and Fog.
-void setFixedState(osg::State& state, unsigned int lights);
+void setFixedPipelineUniforms(osg::State& state, unsigned int lights);
 
 } // namespace osgGpuAnimation

@@ -30,8 +30,7 @@ ModelBuilder baseModel()
     file.node("hip");
     file.node("knee", hip);
     file.at(file.node("body", -1, mesh)).skin = file.skin({hip, knee});
-    file.animation("bend");
-    file.slide(hip);
+    file.slidingClip("bend", hip);
     file.channel(knee, "rotation", {0, 1}, TINYGLTF_TYPE_VEC4, {0, 0, 0, 1, 0, 0, 1, 0});
     file.model.skins[0].inverseBindMatrices = file.floats(TINYGLTF_TYPE_MAT4, identityTwice);
     return file;

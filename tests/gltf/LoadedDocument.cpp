@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/LoadedDocument.h"
 
+#include "gltf/GlbText.h"
+
 #include <gtest/gtest.h>
 
 #include <utility>
@@ -89,6 +91,7 @@ LoadedDocument load(const std::string& bytes, const std::string& fileName, const
 {
     Messages messages;
     Result<tinygltf::Model> model = loadDocument(bytes, fileName, options, messages);
+    if (model) keepSeed(bytes);
     return {std::move(model), messages};
 }
 

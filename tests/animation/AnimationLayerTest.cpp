@@ -11,7 +11,8 @@
 
 #include "support/ClipSets.h"
 #include "support/GaitSet.h"
-#include "support/MixedPose.h"
+#include "support/PaletteDifference.h"
+#include "support/Results.h"
 
 #include <layout.glsl>
 
@@ -35,10 +36,7 @@ namespace
 
 std::vector<JointTransform> clipAt(const std::shared_ptr<const AnimationSet>& set, const char* clip, double time)
 {
-    AnimationController controller(set);
-    EXPECT_TRUE(controller.play(clip));
-    EXPECT_TRUE(controller.seek(time));
-    return mixed(controller);
+    return mixed(playing(set, clip, time));
 }
 
 double turnBetween(const glm::vec4& a, const glm::vec4& b)
@@ -49,8 +47,7 @@ double turnBetween(const glm::vec4& a, const glm::vec4& b)
 TEST(AnimationLayerTest, aMaskedLayerGoesOverItsJointsAlone)
 {
     const auto set = makeGaitSet();
-    AnimationController controller(set);
-    ASSERT_TRUE(controller.play("Walk"));
+    AnimationController controller = playing(set, "Walk");
     AnimationLayer& gesture = controller.layer(1);
     ASSERT_TRUE(gesture.setMask(JointMask::subtree(*set, "spine0", 1).value()));
     ASSERT_TRUE(gesture.play("Run"));
@@ -94,8 +91,7 @@ TEST(AnimationLayerTest, theOrderOfLayersOfEqualBlendPriorityDoesNotMatter)
 TEST(AnimationLayerTest, badInputIsRefusedOrClamped)
 {
     const auto set = makeGaitSet();
-    AnimationController controller(set);
-    ASSERT_TRUE(controller.play("Walk"));
+    AnimationController controller = playing(set, "Walk");
     AnimationLayer& layer = controller.layer(3);
     EXPECT_EQ(controller.layerCount(), 4u);
     EXPECT_EQ(&controller.layer(100), &controller.layer(7)) << "beyond the last the last";
@@ -166,16 +162,14 @@ TEST(AnimationLayerTest, anythingOutOfTheOrdinaryIsNoPlainLoop)
     };
     for (const auto& [name, change] : changes)
     {
-        AnimationController controller(set);
-        ASSERT_TRUE(controller.play(1));
+        AnimationController controller = playing(set, 1);
         controller.setSpeed(-3.0);
         controller.pause();
         EXPECT_TRUE(ControllerDetail::isPlainLoop(controller));
         change(controller);
         EXPECT_FALSE(ControllerDetail::isPlainLoop(controller)) << name;
     }
-    AnimationController moving(withRootMotion(*set, "hips").value());
-    ASSERT_TRUE(moving.play(1));
+    AnimationController moving = playing(withRootMotion(*set, "hips").value(), 1);
     EXPECT_FALSE(ControllerDetail::isPlainLoop(moving)) << "root motion";
 }
 
@@ -368,9 +362,7 @@ TEST(LayerSnapshotTest, copiesAndRestoredLayersContinueExactly)
                 restored = AnimationController(set);
                 for (std::size_t layer = 0; layer < first.layerCount(); ++layer)
                 {
-                    const Result<void> isRestored =
-                        LayerSnapshot::of(first.layer(layer)).restoreTo(restored.layer(layer));
-                    ASSERT_TRUE(isRestored) << isRestored.error().message;
+                    ASSERT_EQ(errorOf(LayerSnapshot::of(first.layer(layer)).restoreTo(restored.layer(layer))), "");
                 }
                 copy = first;
             }
@@ -444,11 +436,8 @@ TEST(LayerSnapshotTest, faultsAreNamedAndTheEdgesAreAccepted)
         AnimationController controller(set);
         LayerSnapshot kept = good;
         cases[i].change(kept);
-        const Result<void> isRestored = kept.restoreTo(controller.layer(0));
-        ASSERT_EQ(static_cast<bool>(isRestored), *cases[i].message == '\0') << cases[i].message;
-        if (isRestored) continue;
-        EXPECT_NE(isRestored.error().message.find(cases[i].message), std::string::npos) << isRestored.error().message;
-        EXPECT_EQ(controller.clip(), -1) << "unchanged";
+        EXPECT_TRUE(hasError(kept.restoreTo(controller.layer(0)), cases[i].message));
+        EXPECT_EQ(controller.clip() == -1, *cases[i].message != '\0') << "unchanged";
     }
 }
 
@@ -572,8 +561,7 @@ std::shared_ptr<const AnimationSet> makeMaskedSet()
 
 std::vector<float> weightsOf(const Result<JointMask>& mask)
 {
-    EXPECT_TRUE(mask) << (mask ? "" : mask.error().message);
-    return mask ? mask.value().weights() : std::vector<float>();
+    return valueOf(mask).weights();
 }
 
 TEST(JointMaskTest, takesASubtreeWithAFeatheredEdge)
@@ -591,9 +579,7 @@ TEST(JointMaskTest, takesJointsByName)
 {
     const auto set = makeMaskedSet();
     EXPECT_EQ(weightsOf(JointMask::joints(*set, {"arm", "hips"})), (std::vector<float>{1, 0, 0, 1, 0, 0, 0, 0, 0}));
-    const Result<JointMask> faulty = JointMask::joints(*set, {"arm", "wing"});
-    ASSERT_FALSE(faulty);
-    EXPECT_EQ(faulty.error().message,
+    EXPECT_EQ(errorOf(JointMask::joints(*set, {"arm", "wing"})),
               "there is no joint \"wing\"; the joints are \"hips\", \"spine\", \"leg\", \"arm\", \"head\", \"hand\"");
     EXPECT_FALSE(JointMask::subtree(*set, "tail"));
 }
@@ -630,9 +616,7 @@ TEST(JointMaskTest, theSetRefusesMasksOfOthersAndTooMany)
 {
     const auto set = makeMaskedSet();
     const auto other = setOf(oneJoint());
-    const Result<std::uint32_t> foreign = set->addMask(JointMask(*other).weights());
-    ASSERT_FALSE(foreign);
-    EXPECT_EQ(foreign.error().message, "a mask of 1 tracks for a set of 9");
+    EXPECT_EQ(errorOf(set->addMask(JointMask(*other).weights())), "a mask of 1 tracks for a set of 9");
 
     JointMask mask(*set);
     for (std::size_t i = 0; i < MaskTable::maxMasks; ++i)
@@ -641,9 +625,8 @@ TEST(JointMaskTest, theSetRefusesMasksOfOthersAndTooMany)
         EXPECT_TRUE(set->addMask(mask.weights()));
     }
     mask.setJoint(1, 1.0f);
-    const Result<std::uint32_t> tooMany = set->addMask(mask.weights());
-    ASSERT_FALSE(tooMany);
-    EXPECT_EQ(tooMany.error().message, "the set has " + std::to_string(MaskTable::maxMasks) + " masks already");
+    EXPECT_EQ(errorOf(set->addMask(mask.weights())),
+              "the set has " + std::to_string(MaskTable::maxMasks) + " masks already");
 }
 
 // All layers of many characters, their copies and their snapshots.

@@ -340,8 +340,7 @@ TEST(BlendSpacePlaybackTest, returningClipsKeepTheirDirectionUntilTheModeChanges
 TEST(BlendSpacePlaybackTest, aNewParameterDuringAFadeKeepsTheShares)
 {
     const auto set = makeSlidingSet(stepClips);
-    AnimationController controller(set);
-    ASSERT_TRUE(controller.play("Pose"));
+    AnimationController controller = playing(set, "Pose");
     ASSERT_TRUE(controller.crossfade(makeStepSpace(*set), 1.0));
     controller.advance(0.25);
     ASSERT_TRUE(controller.setParameter(0.5));
@@ -544,8 +543,7 @@ TEST(BlendSpacePlaybackTest, rootMotionIsThatOfTheMix)
         withRootMotion(*makeSlidingSet({{"Walk", 1.0, {}}, {"Run", 0.5, {}}}), "root", {true, false, false}).value();
     for (double frame : {0.01, 0.3, 3.0})
     {
-        AnimationController controller(set);
-        ASSERT_TRUE(controller.play(BlendSpace::create(*set, {{"Walk", 0.0}, {"Run", 1.0}}).value()));
+        AnimationController controller = playing(set, BlendSpace::create(*set, {{"Walk", 0.0}, {"Run", 1.0}}).value());
         controller.setParameter(0.5);
         for (int i = 0; i * frame < 29.9; ++i)
             controller.advance(frame);

@@ -7,6 +7,7 @@
 #include <osgGpuAnimation/animation/Pose.h>
 
 #include "support/ClipSets.h"
+#include "support/PaletteDifference.h"
 #include "support/RandomCharacter.h"
 #include "support/RandomSet.h"
 
@@ -245,14 +246,9 @@ TEST(BoundsTest, jointsBeyondTheLimitDoNotCount)
     EXPECT_EQ(bounds.max, glm::vec3(2, 0, 4));
 }
 
-constexpr float half = 0.5f;
-
 EntryBoxes boxesOf(const AnimationSet& set)
 {
-    Box box;
-    box.add(glm::vec3(-half));
-    box.add(glm::vec3(half));
-    return EntryBoxes(set.paletteSize(), box);
+    return cubes(set, 0.5f);
 }
 
 std::vector<AffineMatrix> paletteOf(const AnimationSet& set, const BlendSample& sample)
@@ -267,16 +263,7 @@ std::vector<AffineMatrix> paletteOf(const AnimationSet& set, const BlendSample& 
 /// The farthest that a corner moves from one pose to the other.
 double distanceBetween(const AnimationSet& set, const BlendSample& from, const BlendSample& to)
 {
-    const std::vector<AffineMatrix> first = paletteOf(set, from), second = paletteOf(set, to);
-    double farthest = 0.0;
-    for (std::size_t entry = 0; entry < first.size(); ++entry)
-        for (int corner = 0; corner < 8 && set.palette()[entry].kind != PaletteEntry::Kind::Weights; ++corner)
-        {
-            const glm::vec3 point = boxesOf(set)[entry].corner(corner);
-            farthest = std::max<double>(
-                farthest, glm::distance(first[entry].transformPoint(point), second[entry].transformPoint(point)));
-        }
-    return farthest;
+    return largestDistance(set, paletteOf(set, from), paletteOf(set, to), boxesOf(set));
 }
 
 // Linear, stepped and spline channels at random times.
@@ -371,18 +358,6 @@ TEST(ClipTravelTest, morphWeightsMoveVerticesByTheirReach)
     const ClipTravel without(*set, 0, none, std::vector<float>(set->paletteSize(), 0.0f));
     const ClipTravel with(*set, 0, none, std::vector<float>(set->paletteSize(), 10.0f));
     EXPECT_GT(with.length(), without.length());
-}
-
-/// Joints one below the other, each a unit along x of its parent.
-std::vector<Joint> chainOf(int count)
-{
-    std::vector<Joint> joints;
-    for (int joint = 0; joint < count; ++joint)
-    {
-        joints.push_back({"joint " + std::to_string(joint), joint - 1, {}, joint});
-        joints.back().rest.translation.x = 1.0f;
-    }
-    return joints;
 }
 
 AffineMatrix scaling(float scale)

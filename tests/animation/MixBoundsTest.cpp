@@ -165,8 +165,7 @@ TEST(MixBoundsTest, aMixHoldsTheWholeWayOfEitherClipAndAnAddedClipThatFromItsFir
         const auto set = sway.makeSet();
         for (const std::size_t first : {0u, 1u})
         {
-            AnimationController controller(set);
-            ASSERT_TRUE(controller.play(first));
+            AnimationController controller = playing(set, first);
             ASSERT_TRUE(controller.crossfade(1 - first, 1.0));
             expectBoundsHoldTenFrames(controller);
         }
@@ -223,8 +222,7 @@ TEST(MixBoundsTest, whateverCanShowIsPlayed)
         return std::count_if(played.begin(), played.end(),
                              [&](const PlayedClip& one) { return one.clip == clip && !one.pose; });
     };
-    AnimationController itself(set);
-    ASSERT_TRUE(itself.play(1));
+    AnimationController itself = playing(set, 1);
     for (int i = 0; i < 2; ++i)
     {
         itself.advance(0.1);
@@ -232,8 +230,7 @@ TEST(MixBoundsTest, whateverCanShowIsPlayed)
     }
     EXPECT_EQ(countOf(itself, 1), 2) << "three times of one clip: as two of them";
 
-    AnimationController posed(set);
-    ASSERT_TRUE(posed.play(1));
+    AnimationController posed = playing(set, 1);
     ASSERT_TRUE(posed.layer(0).pose().setTranslation(3, glm::vec3(1.0f)));
     EXPECT_EQ(countOf(posed, -1), 0);
     ASSERT_TRUE(posed.layer(0).showPose(1.0));
@@ -241,8 +238,7 @@ TEST(MixBoundsTest, whateverCanShowIsPlayed)
     EXPECT_EQ(countOf(posed, -1), 1) << "a pose does not set all joints";
     EXPECT_EQ(countOf(posed, 1), 1);
 
-    AnimationController crowded(set);
-    ASSERT_TRUE(crowded.play(1));
+    AnimationController crowded = playing(set, 1);
     for (std::size_t layer = 1; layer < maxLayers; ++layer)
     {
         crowded.layer(layer).setMode(AnimationLayer::Mode::Additive);
@@ -253,8 +249,7 @@ TEST(MixBoundsTest, whateverCanShowIsPlayed)
     crowded.advance(0.1);
     EXPECT_EQ(countOf(crowded, -1), 1) << "17 samples, of which one is dropped";
 
-    AnimationController stacked(set);
-    ASSERT_TRUE(stacked.play(1));
+    AnimationController stacked = playing(set, 1);
     ASSERT_TRUE(stacked.layer(1).play(2));
     stacked.layer(1).setWeight(0.5f);
     EXPECT_EQ(countOf(stacked, -1), 0) << "the base hides the rest pose below a lighter layer";

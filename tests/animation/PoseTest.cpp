@@ -9,12 +9,11 @@
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/math/Rotation.h>
 
-#include "support/AdditiveExtremes.h"
 #include "support/ClipSets.h"
-#include "support/MixedPose.h"
 #include "support/PaletteDifference.h"
 #include "support/RandomCharacter.h"
 #include "support/RandomSet.h"
+#include "support/Results.h"
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -59,9 +58,7 @@ std::shared_ptr<const AnimationSet> setOfTwoSkins(RandomCharacter& character)
             skin.joints.push_back(joint);
             skin.inverseBinds.push_back(bind.toMatrix());
         }
-    const auto set = AnimationSet::create({skeleton, skins, {0, 1, 2}, character.morphs, {character.clip(skeleton)}});
-    EXPECT_TRUE(set) << set.error().message;
-    return set.value();
+    return valueOf(AnimationSet::create({skeleton, skins, {0, 1, 2}, character.morphs, {character.clip(skeleton)}}));
 }
 
 AffineMatrix someRoot()
@@ -207,9 +204,7 @@ std::vector<AffineMatrix> jointsOf(const AnimationController& controller)
 TEST(JointPoseTest, whatIsNotSetShowsTheLayersBelow)
 {
     const auto set = makeRandomSet({});
-    AnimationController controller(set);
-    ASSERT_TRUE(controller.play(0));
-    controller.seek(0.4);
+    AnimationController controller = playing(set, 0, 0.4);
     const std::vector<JointTransform> clip = mixed(controller);
     const std::size_t block = set->firstTrackOfMorph(1) + 1; // weights 12 to 23
 
@@ -285,9 +280,7 @@ TEST(JointPoseTest, refusesBadInputAndKeepsThePose)
     for (const auto& [name, isAccepted] : answers)
         EXPECT_FALSE(isAccepted) << name;
     EXPECT_EQ(pose.keyframe().serial(), serial);
-    const Result<void> refused = JointPose(set).setTransforms(withNone);
-    ASSERT_FALSE(refused);
-    EXPECT_NE(refused.error().message.find("joint 7 \"" + set->skeleton().joint(7).name + "\""), std::string::npos);
+    EXPECT_TRUE(hasError(JointPose(set).setTransforms(withNone), "joint 7 \"" + set->skeleton().joint(7).name + "\""));
 }
 
 // Whole skeletons take a shorter way as soon as the extent contains them.
@@ -318,9 +311,7 @@ TEST(JointPoseTest, aStreamThatHasSettledRefusesBadNumbers)
 TEST(JointPoseTest, aWholeSkeletonInJointSpaceOrModelSpace)
 {
     const auto set = makeRandomSet({3, 40, 9});
-    AnimationController clip(set), posed(set);
-    ASSERT_TRUE(clip.play(1));
-    clip.seek(0.7);
+    AnimationController clip = playing(set, 1, 0.7), posed(set);
     std::vector<JointTransform> transforms = mixed(clip);
     transforms.resize(set->skeleton().jointCount());
     ASSERT_TRUE(posed.layer(0).pose().setTransforms(transforms));

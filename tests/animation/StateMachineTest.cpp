@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/animation/StateMachine.h>
 
 #include "support/GaitSet.h"
+#include "support/Results.h"
 
 #include <gtest/gtest.h>
 
@@ -210,9 +211,7 @@ TEST(StateGraphTest, faultsAreNamed)
     {
         StateGraphDescription faulty = description();
         c.spoil(faulty);
-        const auto graph = StateGraph::create(*set, faulty);
-        ASSERT_FALSE(graph) << c.message;
-        EXPECT_NE(graph.error().message.find(c.message), std::string::npos) << graph.error().message;
+        EXPECT_TRUE(hasError(StateGraph::create(*set, faulty), c.message));
     }
 }
 
@@ -312,8 +311,7 @@ TEST(StateGraphTest, acceptsTheLargestGraph)
     for (std::size_t s = 0; s < StateGraph::maxStates; ++s)
         largest.states.push_back({"s" + std::to_string(s), "Walk"});
     largest.transitions.resize(StateGraph::maxTransitions, {"s0", "s1", {"after 0"}, 0.0});
-    const auto graph = StateGraph::create(*set, largest);
-    EXPECT_TRUE(graph) << graph.error().message;
+    EXPECT_TRUE(hasError(StateGraph::create(*set, largest), ""));
     largest.transitions.push_back(largest.transitions.front());
     EXPECT_FALSE(StateGraph::create(*set, largest));
 }

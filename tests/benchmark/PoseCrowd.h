@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "Series.h"
+#include "Report.h"
 
 #include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/gpu/buffers/BufferTexture.h>

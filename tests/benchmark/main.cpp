@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
 
+#include <osg/ArgumentParser>
 #include <osg/Notify>
 
 #include <malloc.h>
@@ -41,23 +42,15 @@ struct Request
 
 bool parse(int count, char** words, Request& request)
 {
-    for (int i = 1; i < count; ++i)
-    {
-        const std::string word = words[i];
-        if (word == "--quick")
-            request.isQuick = true;
-        else if (word == "--return-memory")
-            request.returnsMemory = true;
-        else if (word == "--only" && i + 1 < count)
-            request.parts.insert(words[++i]);
-        else if (word.rfind("--", 0) == 0)
-            return false;
-        else if (request.folder.empty())
-            request.folder = word;
-        else
-            request.files.push_back(word);
-    }
-    return !request.files.empty();
+    osg::ArgumentParser parser(&count, words);
+    request.isQuick = parser.read("--quick");
+    request.returnsMemory = parser.read("--return-memory");
+    for (std::string part; parser.read("--only", part);)
+        request.parts.insert(part);
+    if (parser.containsOptions() || parser.argc() < 3) return false;
+    request.folder = parser[1];
+    request.files.assign(words + 2, words + parser.argc());
+    return true;
 }
 
 /// Records OSG's messages and passes them on to standard error. Figures are invalid if a program did not link (OSG

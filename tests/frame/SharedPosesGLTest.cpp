@@ -1,21 +1,24 @@
 // SPDX-License-Identifier: MIT
 #include "mesh/Tube.h"
-#include "support/BindingRecord.h"
 #include "support/TestCrowd.h"
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
+#include <osgGpuAnimation/gpu/buffers/PlacedInstances.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/mesh/detail/MeshDetail.h>
+#include <osgGpuAnimation/mesh/draw/PaletteBinding.h>
 #include <osgGpuAnimation/mesh/lod/LodLevels.h>
 #include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
 
 #include <glm/geometric.hpp>
+#include <osg/Drawable>
 
 #include <cmath>
 #include <memory>
 #include <random>
+#include <vector>
 
 // Instances of a crowd with a pixel error share poses: how far their vertices are from their places, what is evaluated
 // and what is uploaded.
@@ -25,6 +28,29 @@ namespace osgGpuAnimation
 
 namespace
 {
+
+/// Draws a mesh and keeps what selects its poses.
+class BindingRecord : public osg::Drawable::DrawCallback
+{
+public:
+    struct Draw
+    {
+        std::shared_ptr<const PlacedInstances> placed; ///< null: poses are not shared
+        std::size_t slot, first, count;
+        int level;
+    };
+
+    void drawImplementation(osg::RenderInfo& info, const osg::Drawable* drawable) const override
+    {
+        drawable->drawImplementation(info);
+        const auto* binding =
+            static_cast<const PaletteBinding*>(info.getState()->getLastAppliedAttribute(PaletteBinding::bindingType));
+        draws.push_back({binding->getPlaced(), binding->getSlot(), binding->getInstance(), binding->getDrawnCount(),
+                         binding->getLevel()});
+    }
+
+    mutable std::vector<Draw> draws;
+};
 
 constexpr std::size_t across = 40; ///< instances of a row
 constexpr double fieldOfView = 30.0;

@@ -27,9 +27,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
             json = mutateDocument(json, random).value_or(json);
         else
             mutateBytes(binary, std::min(most, binary.size() + 64));
-        json.resize((json.size() + 3) / 4 * 4, ' ');
-        binary.resize((binary.size() + 3) / 4 * 4);
-        return glb({{jsonChunk, json}, {binaryChunk, binary}});
+        return packedGlb(json, binary);
     };
     return mutate(data, size, most, seed, changeWithin);
 }

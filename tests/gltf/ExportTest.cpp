@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/export/ClipKeys.h"
-#include "gltf/ExportedDocument.h"
 #include "gltf/ImportedFile.h"
+#include "gltf/ModelImport.h"
+#include "serializers/RoundTrip.h"
 #include "serializers/StoredScene.h"
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
@@ -10,6 +11,11 @@
 
 #include <osg/LightSource>
 #include <osg/MatrixTransform>
+#include <osg/Texture2D>
+
+#include <functional>
+#include <set>
+#include <string_view>
 
 namespace osgGpuAnimation::gltf
 {
@@ -83,9 +89,7 @@ ModelBuilder armFile()
 TEST(ExportTest, charactersComeBack)
 {
     const osg::ref_ptr<osg::Group> scene = imported(armFile()).root;
-    ASSERT_TRUE(scene);
     const osg::ref_ptr<osg::Group> read = throughGlb(*scene);
-    ASSERT_TRUE(read);
     expectSameClips(*scene, *read);
     const AnimationSet& before = findCharacter(*scene)->getAnimationSet();
     const AnimationSet& after = findCharacter(*read)->getAnimationSet();
@@ -93,7 +97,6 @@ TEST(ExportTest, charactersComeBack)
     EXPECT_EQ(after.paletteSize(), before.paletteSize());
     // A second time, nothing changes: jumps, pieces of splines and clips without motion are written as they are read.
     const osg::ref_ptr<osg::Group> again = throughGlb(*read);
-    ASSERT_TRUE(again);
     EXPECT_TRUE(haveSameKeyframes(findCharacter(*again)->getAnimationSet(), after));
 
     const nlohmann::json json = exported(*read).json;
@@ -125,9 +128,7 @@ TEST(ExportTest, moreInfluencesAndSkinsWithSharedEntriesComeBack)
     file.animation("bend");
     file.channel(2, "rotation", {0, 1}, TINYGLTF_TYPE_VEC4, {0, 0, 0, 1, 0.6f, 0, 0, 0.8f});
     const osg::ref_ptr<osg::Group> scene = imported(file).root;
-    ASSERT_TRUE(scene);
     const osg::ref_ptr<osg::Group> read = throughGlb(*scene);
-    ASSERT_TRUE(read);
     expectSameClips(*scene, *read);
     EXPECT_EQ(findCharacter(*read)->getAnimationSet().paletteSize(), 6u);
 }
@@ -135,7 +136,6 @@ TEST(ExportTest, moreInfluencesAndSkinsWithSharedEntriesComeBack)
 TEST(ExportTest, severalCharactersBecomeOneThatMovesThemTogether)
 {
     const osg::ref_ptr<osg::Group> one = imported(armFile()).root;
-    ASSERT_TRUE(one);
     const osg::ref_ptr<osg::Group> scene = new osg::Group;
     for (const double x : {0.0, 40.0})
     {
@@ -144,7 +144,6 @@ TEST(ExportTest, severalCharactersBecomeOneThatMovesThemTogether)
         scene->addChild(place);
     }
     const osg::ref_ptr<osg::Group> read = throughGlb(*scene);
-    ASSERT_TRUE(read);
     expectSamePose(*scene, *read, 0, 1.2);
     const std::vector<Clip>& clips = findCharacter(*read)->getAnimationSet().clips();
     ASSERT_EQ(clips.size(), 4u);
@@ -154,7 +153,6 @@ TEST(ExportTest, severalCharactersBecomeOneThatMovesThemTogether)
 TEST(ExportTest, aCrowdIsWrittenAsOneInstance)
 {
     const osg::ref_ptr<osg::Group> one = imported(armFile()).root;
-    ASSERT_TRUE(one);
     const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*findCharacter(*one));
     crowd->setName("arms");
     const AnimationController controller(crowd->getSharedAnimationSet());
@@ -162,7 +160,6 @@ TEST(ExportTest, aCrowdIsWrittenAsOneInstance)
         ASSERT_TRUE(crowd->add(osg::Matrix::translate(x, 0, 0), controller));
     const Warnings warnings{"crowd \"arms\": glTF has no crowds of characters; one of its 2 instances is written"};
     const osg::ref_ptr<osg::Group> read = throughGlb(*crowd, warnings);
-    ASSERT_TRUE(read);
     findCharacter(*one)->setMatrix(osg::Matrix::translate(3, 0, 0));
     expectSamePose(*findCharacter(*one), *read, 0, 1.2);
 }
@@ -269,6 +266,75 @@ TEST(ExportTest, jumpsAreKeysOfTwoTimes)
     for (std::size_t key = 0; key < 4; ++key)
         EXPECT_EQ(keys.values[3 * key], parts.data[key].translation.x);
 }
+
+/// All that shows in a picture but the vertices: shader defines, uniforms and textures, by mesh.
+class Surfaces : public osg::NodeVisitor
+{
+public:
+    explicit Surfaces(osg::Node& scene) : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) { scene.accept(*this); }
+    void apply(osg::Drawable& drawable) override
+    {
+        const osg::StateSet* const state = drawable.getStateSet();
+        std::string text = drawable.getName();
+        for (const auto& [name, define] : state->getDefineList())
+            text += ' ' + name + ' ' + define.first;
+        for (const auto& [name, uniform] : state->getUniformList())
+            for (unsigned int i = 0; uniform.first->getFloatArray() && i < uniform.first->getFloatArray()->size(); ++i)
+                text += ' ' + name + ' ' + std::to_string((*uniform.first->getFloatArray())[i]);
+        for (const auto& [mode, value] : state->getModeList())
+            text += " mode " + std::to_string(mode) + ' ' + std::to_string(value);
+        for (unsigned int unit = 0; unit < state->getTextureAttributeList().size(); ++unit)
+            if (const auto* const texture =
+                    dynamic_cast<const osg::Texture2D*>(state->getTextureAttribute(unit, osg::StateAttribute::TEXTURE)))
+            {
+                const osg::Image& image = *texture->getImage();
+                text += " unit " + std::to_string(unit) + ' ' + std::to_string(texture->getInternalFormat()) + ' ' +
+                        std::to_string(texture->getFilter(osg::Texture::MIN_FILTER)) + ' ' +
+                        std::to_string(texture->getWrap(osg::Texture::WRAP_S)) + ' ' +
+                        std::to_string(std::hash<std::string_view>()(std::string_view(
+                            reinterpret_cast<const char*>(image.data()), image.getTotalSizeInBytes())));
+            }
+        all.insert(text);
+    }
+    std::multiset<std::string> all;
+};
+
+/// See modelFile(); the tolerance of compact clips, 0: they are exact.
+using ExportCase = std::pair<std::string, double>;
+
+class ExportOfModelsTest : public ::testing::TestWithParam<ExportCase>
+{
+};
+
+TEST_P(ExportOfModelsTest, comesBackWithTheSamePosesAndSurfaces)
+{
+    ImportOptions options;
+    if (GetParam().second > 0.0) options.compact = GetParam().second;
+    ImportedModel model;
+    importOrSkip(GetParam().first, model, options);
+    if (IsSkipped() || HasFatalFailure()) return;
+    EXPECT_EQ(model.compacted.has_value(), options.compact.has_value());
+    const osg::ref_ptr<osg::Group> read = throughGlb(*model.root);
+    expectSameClips(*model.root, *read);
+    EXPECT_EQ(Surfaces(*read).all, Surfaces(*model.root).all);
+}
+
+const ExportCase exportCases[] = {{"MaterialBalls.glb", 0.0},
+                                  {"Serpent.glb", 0.0},
+                                  {"Wanderer.glb", 0.0},
+                                  {"Wanderer.glb", 1e-3},
+                                  {"assets/AnimatedMorphCube/AnimatedMorphCube.gltf", 0.0},
+                                  {"assets/CesiumMan/CesiumMan.glb", 0.0},
+                                  {"assets/Fox/Fox.glb", 0.0},
+                                  {"assets/Knight/Knight.glb", 0.0},
+                                  {"assets/SimpleSkin/SimpleSkin.gltf", 0.0},
+                                  {"assets/interpolation_test/interpolation_test.gltf", 0.0},
+                                  {"assets/probe/probe.gltf", 0.0},
+                                  {"assets/rigged_simple/rigged_simple.gltf", 0.0}};
+
+INSTANTIATE_TEST_SUITE_P(Files, ExportOfModelsTest, ::testing::ValuesIn(exportCases),
+                         [](const auto& info)
+                         { return nameOfFile(info.param.first) + (info.param.second > 0.0 ? "_compact" : ""); });
 
 } // namespace
 

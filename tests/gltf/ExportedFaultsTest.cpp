@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // What no glTF file can hold costs the element that has it, and nothing that is written is refused by the import.
 #include "gltf/Export.h"
-#include "gltf/ExportedDocument.h"
 #include "gltf/Import.h"
+#include "serializers/RoundTrip.h"
+#include "support/ClipSets.h"
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
-#include <osgGpuAnimation/authoring/ClipBuilder.h>
 #include <osgGpuAnimation/looks/CharacterProgram.h>
 #include <osgGpuAnimation/looks/PbrMaterial.h>
 #include <osgGpuAnimation/looks/shading/PunctualLight.h>
@@ -41,11 +41,8 @@ struct Reread
         const Result<std::string> glb = exportModel(scene, report);
         if (!glb) error = glb.error().message;
         if (!glb) return;
-        const Result<ImportedModel> read = importModel(glb.value(), "", {});
-        EXPECT_TRUE(read) << read.error().message;
-        if (!read) return;
-        EXPECT_EQ(read.value().messages.warnings, Warnings());
-        model = read.value();
+        model = valueOf(importModel(glb.value(), "", {}));
+        EXPECT_EQ(model.messages.warnings, Warnings());
     }
 
     Messages messages;
@@ -97,10 +94,7 @@ TEST(ExportedFaultsTest, primitivesBeyondTheVerticesCostThemselves)
 /// A triangle that follows a joint of the set.
 osg::ref_ptr<SkinnedGeometry> rigidTriangle(const AnimationSet& set, int joint)
 {
-    const osg::ref_ptr<SkinnedGeometry> made = new SkinnedGeometry;
-    const osg::Vec3 corners[] = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}};
-    made->setVertexArray(new osg::Vec3Array(3, corners));
-    made->addPrimitiveSet(new osg::DrawArrays(GL_TRIANGLES, 0, 3));
+    const osg::ref_ptr<SkinnedGeometry> made = plainTriangle<SkinnedGeometry>("");
     made->setRigidEntry(static_cast<unsigned short>(set.entryOfRigidJoint(joint)));
     applyCharacterProgram(*made->getOrCreateStateSet());
     return made;
@@ -225,9 +219,8 @@ osg::ref_ptr<osg::Node> steepClip()
             tangent.translation.x = track == 0 ? 1e10f : 0.0f;
             parts.data.insert(parts.data.end(), {value, tangent, tangent});
         }
-    const Result<Clip> clip = Clip::create(std::move(parts));
-    EXPECT_TRUE(clip) << clip.error().message;
-    EXPECT_TRUE(made->setAnimationSet(made->getAnimationSet().withClips({clip.value()}).value()));
+    const Clip clip = valueOf(Clip::create(std::move(parts)));
+    EXPECT_TRUE(made->setAnimationSet(made->getAnimationSet().withClips({clip}).value()));
     return made;
 }
 
@@ -235,10 +228,9 @@ osg::ref_ptr<osg::Node> steepClip()
 osg::ref_ptr<osg::Node> farClip()
 {
     const osg::ref_ptr<AnimatedCharacter> made = chainCharacter(2);
-    ClipBuilder builder(made->getAnimationSet().skeleton(), {});
-    EXPECT_TRUE(builder.add(
-        {Channel::Path::Translation, Channel::Interpolation::Linear, 0, {0.0, 1.0}, {0, 0, 0, 1e12, 0, 0}}));
-    EXPECT_TRUE(made->setAnimationSet(made->getAnimationSet().withClips({builder.build("far")}).value()));
+    const Channel away{Channel::Path::Translation, Channel::Interpolation::Linear, 0, {0, 1}, {0, 0, 0, 1e12, 0, 0}};
+    const Clip clip = clipOf(made->getAnimationSet().skeleton(), {away}, "far");
+    EXPECT_TRUE(made->setAnimationSet(made->getAnimationSet().withClips({clip}).value()));
     made->setMatrix(osg::Matrixd::scale(1e8, 1e8, 1e8));
     return made;
 }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "gltf/GlbText.h"
 #include "gltf/Import.h"
 #include "gltf/ModelBuilder.h"
+#include "support/Results.h"
 
 #include <gtest/gtest.h>
 
@@ -12,13 +14,13 @@
 namespace osgGpuAnimation::gltf
 {
 
-/// The model of a file's content. If the import refuses it, the test fails and the model is empty.
+/// The model of a file's content. If the import refuses it, the test ends as a failure.
 inline ImportedModel imported(const std::string& content, const ImportOptions& options = {},
                               const std::string& fileName = "")
 {
-    const Result<ImportedModel> model = importModel(content, fileName, options);
-    EXPECT_TRUE(model) << model.error().message;
-    return model ? model.value() : ImportedModel{};
+    ImportedModel model = valueOf(importModel(content, fileName, options));
+    keepSeed(content);
+    return model;
 }
 
 inline ImportedModel imported(const ModelBuilder& file, const ImportOptions& options = {})
@@ -38,9 +40,7 @@ inline void expectWarnings(const ImportedModel& model, const std::vector<std::st
 /// Expects that the import refuses a file's content with this error, or a part of it.
 inline void expectRefused(const std::string& content, const std::string& message, const ImportOptions& options = {})
 {
-    const Result<ImportedModel> model = importModel(content, "", options);
-    ASSERT_FALSE(model) << "expected: " << message;
-    EXPECT_NE(model.error().message.find(message), std::string::npos) << model.error().message;
+    EXPECT_TRUE(hasError(importModel(content, "", options), message));
 }
 
 /// The first primitive of the file's node. The test fails if the graph has none.

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/document/JsonReader.h"
-#include "gltf/WrittenJson.h"
+
+#include <nlohmann/json.hpp>
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 namespace osgGpuAnimation::gltf
@@ -18,6 +20,25 @@ Result<JsonTree> read(const std::string& text, Messages& messages, const ImportO
     return readJson(text, options, report);
 }
 
+/// The value and all values below it that were not left out. Numbers without a fraction become integers.
+nlohmann::json jsonOf(const JsonValue& value)
+{
+    const bool isObject = value.is(JsonTree::Type::Object);
+    if (value.is(JsonTree::Type::Null)) return nullptr;
+    if (value.is(JsonTree::Type::Boolean)) return value.boolean();
+    if (value.is(JsonTree::Type::String)) return value.text();
+    if (value.is(JsonTree::Type::Number))
+    {
+        const double number = value.number();
+        return std::trunc(number) == number && std::abs(number) < 1e15 ? nlohmann::json(std::int64_t(number))
+                                                                       : nlohmann::json(number);
+    }
+    nlohmann::json made = isObject ? nlohmann::json::object() : nlohmann::json::array();
+    for (const JsonValue& each : value)
+        (isObject ? made[std::string(each.key())] : made.emplace_back()) = jsonOf(each);
+    return made;
+}
+
 /// The text after reading and writing, or the error.
 std::string rewritten(const std::string& text, const ImportOptions& options = {})
 {
@@ -25,7 +46,7 @@ std::string rewritten(const std::string& text, const ImportOptions& options = {}
     Result<JsonTree> tree = read(text, messages, options);
     if (!tree) return tree.error().message;
     JsonTree taken = std::move(tree).value();
-    return writeJson(taken.root());
+    return jsonOf(taken.root()).dump();
 }
 
 std::string nested(std::size_t depth)
@@ -52,7 +73,7 @@ TEST(JsonReaderTest, writesWhatItReads)
         {R"( { "a" : [ 1 , -2.5 , true , false , null , "x" ] } )", R"({"a":[1,-2.5,true,false,null,"x"]})"},
         {R"({"a":8.0,"b":1e3,"c":-0.0})", R"({"a":8,"b":1000,"c":0})"},
         {R"({"a":0.1,"b":1e300})", R"({"a":0.1,"b":1e+300})"},
-        {R"({"a\"b":"\u0000\n\\ü"})", R"({"a\u0022b":"\u0000\u000a\u005cü"})"},
+        {R"({"a\"b":"\u0000\n\\ü"})", R"({"a\"b":"\u0000\n\\ü"})"},
     };
     for (const auto& [text, expected] : texts)
         EXPECT_EQ(rewritten(text), expected);
@@ -114,7 +135,7 @@ TEST(JsonReaderTest, theLastOfTwoEqualKeysCountsWithAWarning)
     Result<JsonTree> result = read(R"({"x":[{"mesh":1,"a":{},"mesh":2,"mesh":3}]})", messages);
     ASSERT_TRUE(result);
     JsonTree tree = std::move(result).value();
-    EXPECT_EQ(writeJson(tree.root()), R"({"x":[{"a":{},"mesh":3}]})");
+    EXPECT_EQ(jsonOf(tree.root()).dump(), R"({"x":[{"a":{},"mesh":3}]})");
     ASSERT_FALSE(messages.warnings.empty());
     EXPECT_EQ(messages.warnings[0], "x[0].mesh: the key appears twice; the last counts");
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/LoadedDocument.h"
 
+#include "gltf/GlbText.h"
+
 #include <gtest/gtest.h>
 
 #include <utility>
@@ -30,8 +32,7 @@ ModelBuilder baseModel()
     file.node("hip");
     file.node("knee", hip);
     file.at(file.node("body", -1, mesh)).skin = file.skin({hip, knee});
-    file.animation("bend");
-    file.slide(hip);
+    file.slidingClip("bend", hip);
     file.channel(knee, "rotation", {0, 1}, TINYGLTF_TYPE_VEC4, {0, 0, 0, 1, 0, 0, 1, 0});
     file.model.skins[0].inverseBindMatrices = file.floats(TINYGLTF_TYPE_MAT4, identityTwice);
     return file;
@@ -90,6 +91,7 @@ LoadedDocument load(const std::string& bytes, const std::string& fileName, const
 {
     Messages messages;
     Result<tinygltf::Model> model = loadDocument(bytes, fileName, options, messages);
+    if (model) keepSeed(bytes);
     return {std::move(model), messages};
 }
 

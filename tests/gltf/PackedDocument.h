@@ -60,13 +60,12 @@ public:
     }
     Result<tinygltf::Model> load(Messages& messages) const
     {
-        std::string binary = _data;
-        binary.resize((binary.size() + 3) / 4 * 4);
         nlohmann::json document = json;
-        document["buffers"][0]["byteLength"] = binary.size();
-        std::string text = document.dump();
-        text.resize((text.size() + 3) / 4 * 4, ' ');
-        return loadDocument(glb({{jsonChunk, text}, {binaryChunk, binary}}), "", {}, messages);
+        document["buffers"][0]["byteLength"] = _data.size();
+        const std::string glb = packedGlb(document.dump(), _data);
+        Result<tinygltf::Model> model = loadDocument(glb, "", {}, messages);
+        if (model) keepSeed(glb);
+        return model;
     }
     /// The error of loading it; empty without one.
     std::string error() const

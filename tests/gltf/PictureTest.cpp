@@ -2,6 +2,7 @@
 #include "gltf/data/Picture.h"
 #include "gltf/EncodedPicture.h"
 #include "gltf/LoadedDocument.h"
+#include "support/Results.h"
 
 #include <gtest/gtest.h>
 
@@ -143,12 +144,11 @@ TEST(PictureTest, tellsFormatAndSize)
                           {losslessWebp(4096, 4095, 20), "image/webp", 4096, 4095, std::size_t(4) * 4096 * 4095}};
     for (const Case& each : cases)
     {
-        const Result<PictureHeader> header = read(each.bytes);
-        ASSERT_TRUE(header) << header.error().message;
-        EXPECT_EQ(header.value().mimeType, each.mimeType);
-        EXPECT_EQ(header.value().width, each.width);
-        EXPECT_EQ(header.value().height, each.height);
-        EXPECT_EQ(header.value().decodedBytes, each.decodedBytes);
+        const auto header = valueOf(read(each.bytes));
+        EXPECT_EQ(header.mimeType, each.mimeType);
+        EXPECT_EQ(header.width, each.width);
+        EXPECT_EQ(header.height, each.height);
+        EXPECT_EQ(header.decodedBytes, each.decodedBytes);
     }
 }
 
@@ -169,7 +169,7 @@ TEST(PictureTest, refusesBombsAndDamage)
         {"a PNG chunk past the end", changed(33, 0x7f), "cut off"},
         {"other pixels than their checksum", changed(45, ~good[45]), "damaged"},
         {"no width", changed(19, 0), "found 0 x 2"},
-        {"no height", jpeg(100, 0, 10), ""},
+        {"no height", jpeg(100, 0, 10), "expected"},
         {"2^31 - 1 a side", png(2147483647, 2147483647, 1000), "expected a picture from 1 x 1 to"},
         {"too wide a PNG", png(largest + 1, 1, 1000), "expected a picture from 1 x 1 to"},
         {"too high a PNG", png(1, largest + 1, 1000), "expected a picture from 1 x 1 to"},
@@ -177,12 +177,12 @@ TEST(PictureTest, refusesBombsAndDamage)
         {"too high a JPEG", jpeg(1, largest + 1, 1000), "expected a picture from 1 x 1 to"},
         {"a PNG of too little data", png(16000, 16000, 20), "far too little"},
         {"a JPEG of too little data", jpeg(16000, 16000, 20), "far too little"},
-        {"a JPEG of many scans", manyScans(), ""},
-        {"a colour type that is none", png(3, 2, 20, 8, 5), ""},
-        {"a depth of 0", png(3, 2, 20, 0, 2), ""},
-        {"a JPEG without a frame", std::string("\xff\xd8\xff\xda\x00\x03!", 7), ""},
+        {"a JPEG of many scans", manyScans(), "expected"},
+        {"a colour type that is none", png(3, 2, 20, 8, 5), "expected"},
+        {"a depth of 0", png(3, 2, 20, 0, 2), "expected"},
+        {"a JPEG without a frame", std::string("\xff\xd8\xff\xda\x00\x03!", 7), "expected"},
         {"a JPEG that ends", std::string("\xff\xd8\xff\xe0\x00", 5), "cut off or damaged"},
-        {"a JPEG of a segment past the end", std::string("\xff\xd8\xff\xe0\xff\xff", 6), ""},
+        {"a JPEG of a segment past the end", std::string("\xff\xd8\xff\xe0\xff\xff", 6), "expected"},
         {"a JPEG of segments without end", "\xff\xd8" + std::string(62, '\xff'), "cut off or damaged"},
         {"a JPEG of 16 bits a channel", jpegOf16Bits(), "damaged"},
         {"a WebP that is cut off", cut(encodedPicture("webp", 64, 64), 2),
@@ -196,9 +196,7 @@ TEST(PictureTest, refusesBombsAndDamage)
     for (const Fault& fault : faults)
     {
         SCOPED_TRACE(fault.name);
-        const auto image = decodeImage(fault.bytes);
-        ASSERT_FALSE(image);
-        EXPECT_NE(image.error().message.find(fault.message), std::string::npos) << image.error().message;
+        EXPECT_TRUE(hasError(decodeImage(fault.bytes), fault.message));
     }
     for (const std::string& file : {png(largest, 1, 1000), png(1, largest, 1000), jpeg(largest, 1, 1000),
                                     jpeg(1, largest, 1000), jpeg(16000, 16000, 500000)})
@@ -214,25 +212,23 @@ TEST(PictureTest, decodesEachFormat)
     {
         SCOPED_TRACE(kind);
         const std::string bytes = encodedPicture(kind, 64, 64, format);
-        const auto image = decodeImage(bytes);
-        ASSERT_TRUE(image) << image.error().message;
-        EXPECT_EQ(image.value()->s(), 64);
-        EXPECT_EQ(image.value()->t(), 64);
-        EXPECT_EQ(image.value()->getPixelFormat(), format);
+        const auto image = valueOf(decodeImage(bytes));
+        EXPECT_EQ(image->s(), 64);
+        EXPECT_EQ(image->t(), 64);
+        EXPECT_EQ(image->getPixelFormat(), format);
         EXPECT_EQ(read(bytes).value().decodedBytes, 4u * 64u * 64u);
-        EXPECT_GT(image.value()->getColor(0, 63).r(), 0.8f); // the upper half is red
-        EXPECT_LT(image.value()->getColor(0, 0).r(), 0.2f);
-        EXPECT_EQ(image.value()->getColor(0, 63).a(), 1.0f);
-        EXPECT_NEAR(image.value()->getColor(0, 0).a(), format == GL_RGBA ? 0.5f : 1.0f, 0.01f);
-        EXPECT_NEAR(image.value()->getColor(0, 0).b(), 1.0f, 0.05f); // not multiplied by alpha
+        EXPECT_GT(image->getColor(0, 63).r(), 0.8f); // the upper half is red
+        EXPECT_LT(image->getColor(0, 0).r(), 0.2f);
+        EXPECT_EQ(image->getColor(0, 63).a(), 1.0f);
+        EXPECT_NEAR(image->getColor(0, 0).a(), format == GL_RGBA ? 0.5f : 1.0f, 0.01f);
+        EXPECT_NEAR(image->getColor(0, 0).b(), 1.0f, 0.05f); // not multiplied by alpha
     }
 }
 
 TEST(PictureTest, aJpegThatIsCutOffKeepsItsPixels)
 {
-    const auto image = decodeImage(cut(encodedPicture("jpg", 64, 64), 40));
-    ASSERT_TRUE(image) << image.error().message;
-    EXPECT_GT(image.value()->getColor(0, 63).r(), 0.8f);
+    const auto image = valueOf(decodeImage(cut(encodedPicture("jpg", 64, 64), 40)));
+    EXPECT_GT(image->getColor(0, 63).r(), 0.8f);
 }
 
 TEST(PictureTest, gammaDoesNotCount)

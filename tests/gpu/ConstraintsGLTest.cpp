@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "support/GLTest.h"
+#include "gpu/PoseGLTest.h"
+#include "support/ClipSets.h"
 #include "support/Limb.h"
-#include "support/RandomConstraints.h"
-#include "support/RandomLayers.h"
 #include "support/RandomSet.h"
-#include "support/ReferenceBlend.h"
-
-#include <osgGpuAnimation/animation/AnimationSet.h>
-#include <osgGpuAnimation/animation/Pose.h>
-#include <osgGpuAnimation/authoring/ClipBuilder.h>
-#include <osgGpuAnimation/gpu/PosePipeline.h>
+#include "support/ReferencePose.h"
+#include "support/Results.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -23,44 +18,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// The largest difference of two palettes, relative to the larger of 1 and the largest expected number.
-double difference(const std::vector<AffineMatrix>& palette, const std::vector<AffineMatrix>& expected)
-{
-    double worst = 0.0, size = 1.0;
-    for (std::size_t entry = 0; entry < palette.size(); ++entry)
-        for (std::size_t row = 0; row < 3; ++row)
-            for (int column = 0; column < 4; ++column)
-            {
-                const double found = static_cast<double>(palette[entry].rows[row][column]);
-                const double wanted = static_cast<double>(expected[entry].rows[row][column]);
-                worst = std::max(worst, std::isfinite(found) ? std::abs(found - wanted) : 1e30);
-                size = std::max(size, std::abs(wanted));
-            }
-    return worst / size;
-}
-
-class ConstraintsGLTest : public GLTest
-{
-protected:
-    void SetUp() override
-    {
-        GLTest::SetUp();
-        if (IsSkipped()) return;
-        pipeline = PosePipeline::of(state());
-        ASSERT_NE(pipeline, nullptr);
-    }
-
-    double differenceFromTwin(const PoseInstruction& instruction, const AnimationSet& set, std::size_t instance,
-                              const AffineMatrix& root = AffineMatrix(), std::size_t slot = 0)
-    {
-        std::vector<AffineMatrix> twin;
-        Pose::evaluate(set, instruction, root, twin);
-        const std::vector<AffineMatrix> palette = pipeline->readPalette(state(), set, slot, instance);
-        return palette.size() == twin.size() ? difference(palette, twin) : 1e30;
-    }
-
-    PosePipeline* pipeline = nullptr;
-};
+using ConstraintsGLTest = PoseGLTest;
 
 } // namespace
 
@@ -90,7 +48,7 @@ TEST_F(ConstraintsGLTest, randomSettingsAreTheTwinsPose)
         ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
         for (std::size_t i = 0; i < stacks.size(); ++i)
         {
-            const double found = differenceFromTwin(stacks[i], *set, i, character % 3 == 0 ? AffineMatrix() : root);
+            const double found = differenceFromTwin(*set, stacks[i], i, character % 3 == 0 ? AffineMatrix() : root);
             EXPECT_LT(found, 10.0) << "not finite";
             if (reference::blend(*set, stacks[i]).closestDecision < 1e-5) continue;
             const double sensitivity = sensitivityOf(*set, stacks[i], random);
@@ -122,39 +80,23 @@ TEST_F(ConstraintsGLTest, theOrderOfDeclarationIsTheTwins)
         ASSERT_TRUE(controller.constraint("reach").setTarget({0.4f, 1.4f, 0.3f}));
         ASSERT_TRUE(controller.constraint("look").setTarget({3, 1.5f, 3}));
         ASSERT_TRUE(controller.constraint("point").setTarget({1, 2, 3}));
-        PoseBatch batch(set);
-        batch.add(controller.instruction());
-        ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
-        EXPECT_LE(differenceFromTwin(controller.instruction(), *set, 0), 5e-6);
+        EXPECT_LE(evaluatedDifference(set, controller.instruction()), 5e-6);
     }
 }
 
 // The path begins at the root, which no clip moves, and ends at a joint that slides and grows.
 TEST_F(ConstraintsGLTest, jointsOfAPathMoveAsTheirLevelsDo)
 {
-    std::vector<Joint> joints{jointAt("root", {0, 1, 0}), jointAt("middle", {0, 0.5f, 0}),
-                              jointAt("tip", {0, 0.2f, 0})};
-    for (int joint = 0; joint < 3; ++joint)
-        joints[static_cast<std::size_t>(joint)].parent = joint - 1;
-    const Skeleton skeleton = Skeleton::create(joints).value();
-    ClipBuilder builder(skeleton, {});
-    for (const auto& [path, end] : {std::pair(Channel::Path::Translation, glm::dvec3(0.7, 0.9, -0.3)),
-                                    std::pair(Channel::Path::Scale, glm::dvec3(1.5, 2.0, 0.8))})
-    {
-        Channel channel{path, Channel::Interpolation::Linear, 1, {0.0, 1.0}, {}};
-        channel.values = {0.0, 0.5, 0.0, end.x, end.y, end.z};
-        if (path == Channel::Path::Scale) channel.values = {1.0, 1.0, 1.0, end.x, end.y, end.z};
-        (void)builder.add(channel);
-    }
-    AnimationParts parts{skeleton, {}, {}, {}, {}, {LookAt{"look", {"root", "middle", "tip"}}}};
-    parts.clips = {builder.build("slide")};
-    const auto set = AnimationSet::create(std::move(parts)).value();
+    const auto bare =
+        valueOf(limbOf({jointAt("root", {0, 1, 0}), jointAt("middle", {0, 0.5f, 0}), jointAt("tip", {0, 0.2f, 0})},
+                       {LookAt{"look", {"root", "middle", "tip"}}}));
+    const auto linear = Channel::Interpolation::Linear;
+    const auto set = valueOf(bare->withClips(
+        {clipOf(bare->skeleton(), {{Channel::Path::Translation, linear, 1, {0, 1}, {0, 0.5, 0, 0.7, 0.9, -0.3}},
+                                   {Channel::Path::Scale, linear, 1, {0, 1}, {1, 1, 1, 1.5, 2.0, 0.8}}})}));
     PoseInstruction instruction = instructionAt(*set, 0, 0.6);
     instruction.targets.assign(1, {{2, 3, 1}, 1.0f, {0, 0, 0}, 0.0f, {0, 0, 0, 0}});
-    PoseBatch batch(set);
-    batch.add(instruction);
-    ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
-    EXPECT_LE(differenceFromTwin(instruction, *set, 0), 5e-6);
+    EXPECT_LE(evaluatedDifference(set, instruction), 5e-6);
 }
 
 // Shaders read an end joint's rotation in the space of the palette.
@@ -178,10 +120,7 @@ TEST_F(ConstraintsGLTest, endRotationsFollowAnyRootMatrix)
     for (const auto& [name, columns] : roots)
     {
         const AffineMatrix root = AffineMatrix::fromColumns(columns);
-        PoseBatch batch(set);
-        batch.add(controller.instruction(), root);
-        ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
-        EXPECT_LE(differenceFromTwin(controller.instruction(), *set, 0, root), 5e-6) << name;
+        EXPECT_LE(evaluatedDifference(set, controller.instruction(), &root), 5e-6) << name;
     }
 }
 
@@ -199,7 +138,7 @@ TEST_F(ConstraintsGLTest, onlyConstraintsWithTargetsCostADraw)
             batch.add(controller.instruction());
         const auto before = pipeline->getCounters();
         EXPECT_TRUE(pipeline->evaluate(state(), batch, 0));
-        EXPECT_LE(differenceFromTwin(controller.instruction(), *set, count - 1), 1e-6);
+        EXPECT_LE(differenceFromTwin(*set, controller.instruction(), count - 1), 1e-6);
         return pipeline->getCounters().feedbackDraws - before.feedbackDraws;
     };
     EXPECT_EQ(drawsOf(1), 3u);
@@ -256,7 +195,7 @@ TEST_F(ConstraintsGLTest, constraintsOfBothSidesAreTheTwins)
         ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
         EXPECT_EQ(pipeline->getCounters().feedbackDraws - before.feedbackDraws,
                   set->levelCount() + constraints.size() + dividedLevels);
-        EXPECT_LE(differenceFromTwin(controller.instruction(), *set, 3), 5e-6);
+        EXPECT_LE(differenceFromTwin(*set, controller.instruction(), 3), 5e-6);
     }
 }
 
@@ -274,7 +213,7 @@ TEST_F(ConstraintsGLTest, chunksHaveTheirOwnTargets)
     }
     ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
     for (std::size_t i = 0; i < controllers.size(); ++i)
-        EXPECT_LE(differenceFromTwin(controllers[i].instruction(), *set, i), 1e-6) << i;
+        EXPECT_LE(differenceFromTwin(*set, controllers[i].instruction(), i), 1e-6) << i;
 }
 
 TEST_F(ConstraintsGLTest, instancesWithAndWithoutTargetsDoNotShareABatch)
@@ -294,8 +233,8 @@ TEST_F(ConstraintsGLTest, instancesWithAndWithoutTargetsDoNotShareABatch)
     // A caller may mix them all the same.
     batch.add(plain.instruction());
     ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
-    EXPECT_LE(differenceFromTwin(looking.instruction(), *set, 0), 1e-6);
-    EXPECT_LE(differenceFromTwin(plain.instruction(), *set, 1), 1e-6);
+    EXPECT_LE(differenceFromTwin(*set, looking.instruction(), 0), 1e-6);
+    EXPECT_LE(differenceFromTwin(*set, plain.instruction(), 1), 1e-6);
 }
 
 // Numbers that no controller lets through: the instance keeps the mixed pose.

@@ -3,6 +3,7 @@
 
 #include "support/GLTest.h"
 #include "support/Picture.h"
+#include "support/Results.h"
 #include "support/ThreadingModels.h"
 
 #include <osg/Geometry>
@@ -84,9 +85,8 @@ TEST_F(EglGraphicsContextGLTest, drawsAndReadsBack)
 
 TEST_F(EglGraphicsContextGLTest, twoContextsKeepTheirOwnPictures)
 {
-    Result<osg::ref_ptr<EglGraphicsContext>> made = EglGraphicsContext::create(32, 16);
-    ASSERT_TRUE(made) << made.error().message;
-    EglGraphicsContext& other = *made.value();
+    const auto made = valueOf(EglGraphicsContext::create(32, 16));
+    EglGraphicsContext& other = *made;
     EXPECT_EQ(clearAndRead(1.0f, 0.0f, 0.0f), (Colour{255, 0, 0, 255}));
 
     ASSERT_TRUE(other.realize());
@@ -105,15 +105,14 @@ TEST_F(EglGraphicsContextGLTest, sharedContextsShareTexturesAndContextID)
 {
     osg::ref_ptr<osg::GraphicsContext::Traits> traits = sizedTraits(8, 8);
     traits->sharedContext = &context();
-    Result<osg::ref_ptr<EglGraphicsContext>> made = EglGraphicsContext::create(traits.get());
-    ASSERT_TRUE(made) << made.error().message;
+    const auto made = valueOf(EglGraphicsContext::create(traits.get()));
     GLuint texture = 0;
     glGenTextures(1, &texture);
     glBindTexture(GL_TEXTURE_2D, texture);
-    ASSERT_TRUE(made.value()->realize());
-    ASSERT_TRUE(made.value()->makeCurrent());
+    ASSERT_TRUE(made->realize());
+    ASSERT_TRUE(made->makeCurrent());
     EXPECT_TRUE(glIsTexture(texture));
-    EXPECT_EQ(made.value()->getState()->getContextID(), state().getContextID());
+    EXPECT_EQ(made->getState()->getContextID(), state().getContextID());
 }
 
 TEST_F(EglGraphicsContextGLTest, multisamplesOrSaysThatItDoesNot)
@@ -121,13 +120,12 @@ TEST_F(EglGraphicsContextGLTest, multisamplesOrSaysThatItDoesNot)
     osg::ref_ptr<osg::GraphicsContext::Traits> traits = sizedTraits(16, 16);
     traits->sampleBuffers = 1;
     traits->samples = 4;
-    Result<osg::ref_ptr<EglGraphicsContext>> made = EglGraphicsContext::create(traits.get());
-    ASSERT_TRUE(made) << made.error().message;
-    ASSERT_TRUE(made.value()->realize());
-    ASSERT_TRUE(made.value()->makeCurrent());
+    const auto made = valueOf(EglGraphicsContext::create(traits.get()));
+    ASSERT_TRUE(made->realize());
+    ASSERT_TRUE(made->makeCurrent());
     GLint samples = -1;
     glGetIntegerv(GL_SAMPLES, &samples);
-    EXPECT_EQ(samples > 0, made.value()->getTraits()->samples > 0);
+    EXPECT_EQ(samples > 0, made->getTraits()->samples > 0);
     const std::string renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
     const std::string version = reinterpret_cast<const char*>(glGetString(GL_VERSION));
     const bool hasSamples = renderer.find("llvmpipe") == 0 && version.find("Mesa 22.") != std::string::npos;
@@ -142,9 +140,8 @@ TEST_F(EglGraphicsContextGLTest, hasTheColorBitsAskedFor)
     {
         osg::ref_ptr<osg::GraphicsContext::Traits> traits = sizedTraits(16, 16);
         traits->alpha = alpha;
-        Result<osg::ref_ptr<EglGraphicsContext>> made = EglGraphicsContext::create(traits.get());
-        ASSERT_TRUE(made) << made.error().message;
-        ASSERT_TRUE(made.value()->realize() && made.value()->makeCurrent());
+        const auto made = valueOf(EglGraphicsContext::create(traits.get()));
+        ASSERT_TRUE(made->realize() && made->makeCurrent());
         const std::pair<GLenum, GLint> bits[] = {
             {GL_RED_BITS, 8}, {GL_GREEN_BITS, 8}, {GL_BLUE_BITS, 8}, {GL_ALPHA_BITS, static_cast<GLint>(alpha)}};
         for (const auto& [name, expected] : bits)
@@ -153,10 +150,10 @@ TEST_F(EglGraphicsContextGLTest, hasTheColorBitsAskedFor)
             glGetIntegerv(name, &found);
             EXPECT_EQ(found, expected) << name << " with " << alpha << " bits of alpha";
         }
-        made.value()->close();
-        EXPECT_FALSE(made.value()->valid());
-        EXPECT_FALSE(made.value()->isRealized());
-        EXPECT_FALSE(made.value()->makeCurrent()) << "closed";
+        made->close();
+        EXPECT_FALSE(made->valid());
+        EXPECT_FALSE(made->isRealized());
+        EXPECT_FALSE(made->makeCurrent()) << "closed";
     }
     ASSERT_TRUE(context().makeCurrent());
 }
@@ -168,14 +165,10 @@ TEST_F(EglGraphicsContextGLTest, refusesWhatCannotBe)
     EXPECT_FALSE(EglGraphicsContext::create(10, -1));
     osg::ref_ptr<osg::GraphicsContext::Traits> traits = sizedTraits(16, 16);
     traits->sharedContext = new osgViewer::GraphicsWindowEmbedded(0, 0, 16, 16);
-    const Result<osg::ref_ptr<EglGraphicsContext>> shared = EglGraphicsContext::create(traits.get());
-    ASSERT_FALSE(shared);
-    EXPECT_EQ(shared.error().message, "EGL: sharedContext is not an EglGraphicsContext");
+    EXPECT_EQ(errorOf(EglGraphicsContext::create(traits.get())), "EGL: sharedContext is not an EglGraphicsContext");
     traits->sharedContext = nullptr;
     traits->glContextVersion = "9.1";
-    Result<osg::ref_ptr<EglGraphicsContext>> made = EglGraphicsContext::create(traits.get());
-    ASSERT_FALSE(made);
-    EXPECT_NE(made.error().message.find("version and profile"), std::string::npos) << made.error().message;
+    EXPECT_TRUE(hasError(EglGraphicsContext::create(traits.get()), "version and profile"));
 }
 
 TEST_F(CoreContextGLTest, isACoreContext)
@@ -193,8 +186,7 @@ TEST_F(EglGraphicsContextGLTest, takesAWindowsPlaceInEveryThreadingModel)
     for (const osgViewer::ViewerBase::ThreadingModel model : threadingModels)
     {
         SCOPED_TRACE(model);
-        Result<osg::ref_ptr<EglGraphicsContext>> made = EglGraphicsContext::create(64, 48);
-        ASSERT_TRUE(made) << made.error().message;
+        const auto made = valueOf(EglGraphicsContext::create(64, 48));
         // A white square covers the middle half of the picture.
         osg::ref_ptr<osg::Geometry> square = osg::createTexturedQuadGeometry({-0.5, 0, -0.5}, {1, 0, 0}, {0, 0, 1});
         square->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
@@ -202,7 +194,7 @@ TEST_F(EglGraphicsContextGLTest, takesAWindowsPlaceInEveryThreadingModel)
         osg::ref_ptr<Picture> picture = new Picture;
         osgViewer::Viewer viewer;
         osg::Camera* camera = viewer.getCamera();
-        camera->setGraphicsContext(made.value());
+        camera->setGraphicsContext(made);
         camera->setViewport(0, 0, 64, 48);
         camera->setClearColor({0, 0, 1, 1});
         camera->setProjectionMatrixAsOrtho(-1, 1, -1, 1, 0.1, 10);

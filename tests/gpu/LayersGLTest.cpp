@@ -6,12 +6,11 @@
 #include <osgGpuAnimation/authoring/CompactClips.h>
 
 #include "gpu/PoseGLTest.h"
-#include "support/AdditiveExtremes.h"
+#include "support/ClipSets.h"
 #include "support/GaitSet.h"
-#include "support/PoseErrors.h"
-#include "support/RandomLayers.h"
+#include "support/PaletteDifference.h"
 #include "support/RandomSet.h"
-#include "support/ReferenceBlend.h"
+#include "support/ReferencePose.h"
 
 #include <algorithm>
 #include <cmath>
@@ -339,17 +338,10 @@ TEST_P(PosedJointsGLTest, aPoseThatDoesNotFitShowsNothing)
 /// 60 joints in a chain, each a unit along x from its parent and of that scale.
 std::shared_ptr<const AnimationSet> chainSet(float scale)
 {
-    std::vector<Joint> joints;
-    Skin skin;
+    Skin skin{"", {}, std::vector<AffineMatrix>(60)};
     for (int joint = 0; joint < 60; ++joint)
-    {
-        joints.push_back({"joint " + std::to_string(joint), joint - 1, {}, joint});
-        joints.back().rest.translation.x = 1.0f;
-        joints.back().rest.scale = glm::vec4(scale, scale, scale, 0.0f);
         skin.joints.push_back(joint);
-        skin.inverseBinds.emplace_back();
-    }
-    return AnimationSet::create({Skeleton::create(std::move(joints)).value(), {skin}, {}, {}, {}}).value();
+    return AnimationSet::create({Skeleton::create(chainOf(60, scale)).value(), {skin}, {}, {}, {}}).value();
 }
 
 // Products beyond 1e18 are limited in the twin and in the shaders.

@@ -8,6 +8,7 @@
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,16 @@ protected:
         std::vector<AffineMatrix> twin;
         Pose::evaluate(set, instruction, root, twin);
         return paletteDifference(pipeline->readPalette(state(), set, slot, instance), twin);
+    }
+
+    /// The same of a batch of one instance, which it evaluates in slot 0.
+    double evaluatedDifference(const std::shared_ptr<const AnimationSet>& set, const PoseInstruction& instruction,
+                               const AffineMatrix* root = nullptr)
+    {
+        PoseBatch batch(set);
+        root ? batch.add(instruction, *root) : batch.add(instruction);
+        EXPECT_TRUE(pipeline->evaluate(state(), batch, 0));
+        return differenceFromTwin(*set, instruction, 0, root ? *root : AffineMatrix());
     }
 
     /// Evaluates a batch in slot 0 and returns what it cost.

@@ -7,9 +7,8 @@
 #include <osgGpuAnimation/gpu/passes/FeedbackTimer.h>
 
 #include "gpu/PoseGLTest.h"
+#include "support/ClipSets.h"
 #include "support/NotifyLog.h"
-#include "support/PoseErrors.h"
-#include "support/RandomLayers.h"
 #include "support/RandomSet.h"
 
 #include <layout.glsl>
@@ -270,10 +269,7 @@ TEST_F(PosePipelineCostGLTest, aPassThatDoesNotCompileLeavesNoPalette)
 /// A set without clips, whose palette entries take more room than its keyframes.
 std::shared_ptr<const AnimationSet> jointsAlone(const std::vector<Constraint>& constraints, int count)
 {
-    std::vector<Joint> joints;
-    for (int joint = 0; joint < count; ++joint)
-        joints.push_back({"joint" + std::to_string(joint), joint - 1, {}, 0});
-    return AnimationSet::create({Skeleton::create(joints).value(), {}, {0}, {}, {}, constraints}).value();
+    return AnimationSet::create({Skeleton::create(chainOf(count)).value(), {}, {0}, {}, {}, constraints}).value();
 }
 
 TEST_F(PosePipelineCostGLTest, aSetThatFillsTheBufferTextureIsTaken)
@@ -341,7 +337,7 @@ TEST_F(PosePipelineCostGLTest, samplesAndTargetsFitTheBufferTextureToo)
 {
     std::vector<Constraint> looks;
     for (int look = 0; look < 8; ++look)
-        looks.push_back(LookAt{"look" + std::to_string(look), {"joint0"}});
+        looks.push_back(LookAt{"look" + std::to_string(look), {"joint 0"}});
     pipeline->options().maxTexels = 1000;
     for (const bool hasTargets : {false, true})
     {

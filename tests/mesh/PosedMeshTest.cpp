@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "mesh/TriangleBox.h"
 #include "support/TestCrowd.h"
 #include <osgGpuAnimation/animation/detail/ControllerDetail.h>
 
@@ -11,6 +10,7 @@
 #include <osgGpuAnimation/nodes/PickedJoint.h>
 
 #include <gtest/gtest.h>
+#include <osg/BoundingBox>
 #include <osg/KdTree>
 #include <osg/Texture2D>
 #include <osg/TriangleFunctor>
@@ -20,6 +20,7 @@
 #include <osgUtil/Statistics>
 
 #include <algorithm>
+#include <initializer_list>
 #include <iterator>
 #include <utility>
 
@@ -30,6 +31,19 @@ namespace osgGpuAnimation
 
 namespace
 {
+
+/// For osg::TriangleFunctor: the number of triangles and the bounding box of their corners.
+struct TriangleBox
+{
+    void operator()(const osg::Vec3& a, const osg::Vec3& b, const osg::Vec3& c, bool = false)
+    {
+        ++triangles;
+        for (const osg::Vec3& corner : {a, b, c})
+            box.expandBy(corner);
+    }
+    int triangles = 0;
+    osg::BoundingBox box;
+};
 
 osg::ref_ptr<osgUtil::LineSegmentIntersector> hitAt(osg::Node& node, double x)
 {

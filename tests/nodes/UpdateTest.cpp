@@ -153,4 +153,28 @@ TEST(UpdateTest, aMaskedCharacterWaitsAndOtherVisitorsDoNotAdvance)
     EXPECT_DOUBLE_EQ(character->getController().time(), 0.75) << "equal times show equal poses";
 }
 
+// The same simulation times show the same, whatever the times before.
+TEST(UpdateTest, theWayToATimePlaysNoPart)
+{
+    const std::pair<const char*, std::vector<double>> ways[] = {{"at once", {0.0, 1.9}},
+                                                                {"in steps", {0.0, 0.25, 0.3, 1.0, 1.7, 1.9}},
+                                                                {"paused", {0.0, 0.6, 0.6, 0.6, 1.9, 1.9}},
+                                                                {"backwards", {0.0, 4.0, 3.0, 2.5, 1.9}},
+                                                                {"far and back", {0.0, 1e5, 1.9}},
+                                                                {"back beyond the start", {0.0, 1.0, -7.3, 1.9}}};
+    for (const auto& [name, times] : ways)
+    {
+        const osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+        const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*character);
+        const AnimatedCrowd::Instance instance = crowd->add(osg::Matrix(), playing("shift")).value();
+        for (const double time : times)
+        {
+            character->update(time);
+            crowd->update(time);
+        }
+        EXPECT_NEAR(character->getController().time(), 1.9, 1e-9) << name;
+        EXPECT_NEAR(crowd->getController(instance)->time(), 1.9, 1e-9) << name;
+    }
+}
+
 } // namespace osgGpuAnimation

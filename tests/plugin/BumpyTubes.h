@@ -43,8 +43,7 @@ inline ModelBuilder bumpyTubes()
     const int arm = model.node("arm"), tube = bumpyTube(model);
     model.node("upper", arm, tube);
     model.node("lower", model.node("hand", arm), bumpyTube(model));
-    model.animation("Slide");
-    model.slide(arm);
+    model.slidingClip("Slide", arm);
     return model;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "plugin/SharedAssets.h"
 #include "serializers/StoredScene.h"
-#include "support/Slowdown.h"
+#include "support/PeakMemory.h"
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>

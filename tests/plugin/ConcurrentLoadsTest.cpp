@@ -32,8 +32,7 @@ protected:
         gltf::ModelBuilder model;
         const int arm = model.node("arm");
         model.node("sword", arm, model.triangle());
-        model.animation("Slide");
-        model.slide(arm);
+        model.slidingClip("Slide", arm);
         const std::string wanderer = ownScene("Wanderer.glb");
         files = {stored.folder.write("arm.gltf", model.text()), wanderer, stored.folder.file("kept.osgb")};
         ASSERT_TRUE(osgDB::writeNodeFile(*osgDB::readRefNodeFile(wanderer), files.back()));

@@ -62,13 +62,6 @@ std::vector<osg::LOD*> lodsOf(osg::Node& node)
     return finder.lods;
 }
 
-ImportedModel importedDocument(const Json& document)
-{
-    const Result<ImportedModel> model = importModel(document.dump(), "", {});
-    EXPECT_TRUE(model) << model.error().message;
-    return model ? model.value() : ImportedModel{};
-}
-
 /// The ranges of the LOD's children, in its order.
 std::vector<std::pair<float, float>> rangesOf(const osg::LOD& lod)
 {
@@ -94,7 +87,7 @@ TEST(FileLodsTest, levelsAreSelectedBySizeOnScreen)
     {
         Json document = levelsDocument();
         if (!one.coverage.is_null()) document["nodes"][body]["extras"]["MSFT_screencoverage"] = one.coverage;
-        const ImportedModel model = importedDocument(document);
+        const ImportedModel model = imported(document.dump());
         EXPECT_TRUE(model.messages.warnings.empty()) << model.messages.warnings.front();
         const std::vector<osg::LOD*> lods = lodsOf(*model.root);
         ASSERT_EQ(lods.size(), 2u);
@@ -110,7 +103,7 @@ TEST(FileLodsTest, levelsAreWhereTheirNodeIs)
     Json document = levelsDocument();
     document["nodes"][knee]["children"] = {5}; // the rock moves with the knee, and its level with it
     document["scenes"][0]["nodes"] = {hip, body};
-    const ImportedModel model = importedDocument(document);
+    const ImportedModel model = imported(document.dump());
     EXPECT_TRUE(model.messages.warnings.empty()) << model.messages.warnings.front();
     EXPECT_EQ(model.nodeParents, (std::vector<int>{-1, hip, -1, -1, -1, knee, knee}));
     const Skeleton& skeleton = model.set->skeleton();
@@ -124,7 +117,7 @@ TEST(FileLodsTest, levelsAreWhereTheirNodeIs)
 TEST(FileLodsTest, crowdsShowTheMostDetailedAndCopiesAndScenesKeepAll)
 {
     const StoredScene store;
-    const ImportedModel model = importedDocument(levelsDocument());
+    const ImportedModel model = imported(levelsDocument().dump());
     const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*model.character);
     ASSERT_EQ(crowd->getNumChildren(), 1u);
     EXPECT_EQ(crowd->getChild(0), lodsOf(*model.character)[0]->getChild(0));
@@ -145,13 +138,13 @@ TEST(FileLodsTest, variantsAndVisibilityReachEveryLevel)
     document["materials"].push_back({{"name", "red"}});
     document["meshes"][0]["primitives"][0]["extensions"]["KHR_materials_variants"]["mappings"] = {
         {{"material", 1}, {"variants", {0}}}};
-    const ImportedModel model = importedDocument(document);
+    const ImportedModel model = imported(document.dump());
     ASSERT_TRUE(model.character->getMeshes().setVariant("red"));
     const osg::LOD& lod = *lodsOf(*model.character)[0];
     for (unsigned int level = 0; level < lod.getNumChildren(); ++level)
         EXPECT_EQ(lod.getChild(level)->getStateSet()->getName(), "red") << level;
     document["nodes"][body]["extensions"]["KHR_node_visibility"]["visible"] = false;
-    const ImportedModel hidden = importedDocument(document);
+    const ImportedModel hidden = imported(document.dump());
     for (const osg::LOD* each : lodsOf(*hidden.root))
         for (unsigned int level = 0; level < each->getNumChildren(); ++level)
             EXPECT_EQ(each->getChild(level)->getNodeMask() == 0, each == lodsOf(*hidden.root)[0]) << level;
@@ -204,7 +197,7 @@ TEST(FileLodsTest, aFaultLeavesTheNodeItself)
         Json document = levelsDocument();
         document["scenes"].push_back({{"nodes", {hip}}});
         document[Json::json_pointer(one.path)] = one.value;
-        const ImportedModel model = importedDocument(document);
+        const ImportedModel model = imported(document.dump());
         std::string warnings;
         for (const std::string& warning : model.messages.warnings)
             warnings += warning + '\n';
@@ -224,7 +217,7 @@ TEST(FileLodsTest, levelsThatContainEachOtherAreNoCycle)
     document["nodes"][inFirst]["extensions"]["MSFT_lod"]["ids"] = {second};
     document["nodes"][inSecond]["extensions"]["MSFT_lod"]["ids"] = {first};
     document["scenes"][0]["nodes"] = {first};
-    const ImportedModel model = importedDocument(document);
+    const ImportedModel model = imported(document.dump());
     ASSERT_EQ(model.messages.warnings.size(), 1u);
     EXPECT_EQ(model.messages.warnings[0],
               "nodes[3].extensions.MSFT_lod: expected no levels of detail within others, found nodes[3], a level or "
@@ -268,7 +261,7 @@ TEST(FileLodsTest, levelsOfMaterialsAreOneNote)
     Json document = baseDocument();
     document["materials"][0]["extensions"]["MSFT_lod"]["ids"] = {1};
     document["materials"].push_back(document["materials"][0]);
-    const ImportedModel model = importedDocument(document);
+    const ImportedModel model = imported(document.dump());
     EXPECT_TRUE(model.messages.warnings.empty()) << model.messages.warnings.front();
     const std::string expected =
         "materials[0].extensions.MSFT_lod: levels of materials are ignored; the material itself is drawn";

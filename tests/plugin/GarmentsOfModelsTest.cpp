@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/Import.h"
-#include "gltf/SplitModel.h"
+#include "gltf/GlbText.h"
+#include "gltf/ImportedFile.h"
 #include "plugin/SharedAssets.h"
 #include "serializers/StoredScene.h"
 #include "support/VertexDistance.h"
@@ -25,22 +25,16 @@ const char* const clips[] = {"Idle", "Running_A", "1H_Melee_Attack_Chop", "Death
 const std::set<std::string> clothes{"Knight_Helmet", "Knight_Cape", "Knight_ArmLeft", "1H_Sword", "Knight_Body"};
 
 /// The model without the meshes of some nodes. areKept: those of the names, else all others.
-std::string withMeshes(SplitModel split, const std::set<std::string>& names, bool areKept)
+std::string withMeshes(GlbParts model, const std::set<std::string>& names, bool areKept)
 {
-    for (nlohmann::json& node : split.document()["nodes"])
+    for (nlohmann::json& node : model.json["nodes"])
     {
         if (!node.contains("mesh") || (names.count(node["name"]) > 0) == areKept) continue;
         node.erase("mesh");
         node.erase("skin");
     }
-    return areKept ? split.mesh() : split.whole();
-}
-
-osg::ref_ptr<AnimatedCharacter> characterOf(const std::string& bytes)
-{
-    const Result<ImportedModel> model = importModel(bytes, "", {});
-    EXPECT_TRUE(model) << model.error().message;
-    return model ? model.value().character : nullptr;
+    if (areKept) model.json.erase("animations");
+    return model.whole();
 }
 
 class KnightsClothes
@@ -48,15 +42,15 @@ class KnightsClothes
 public:
     KnightsClothes()
     {
-        SplitModel split(readBytes(sharedFile(knightFile)));
+        GlbParts split(readBytes(sharedFile(knightFile)));
         nlohmann::json few = nlohmann::json::array();
-        for (const nlohmann::json& animation : split.document()["animations"])
+        for (const nlohmann::json& animation : split.json["animations"])
             if (std::find(std::begin(clips), std::end(clips), animation["name"]) != std::end(clips))
                 few.push_back(animation);
-        split.document()["animations"] = few;
-        whole = characterOf(split.whole());
-        body = characterOf(withMeshes(split, clothes, false));
-        garment = characterOf(withMeshes(split, clothes, true));
+        split.json["animations"] = few;
+        whole = imported(split.whole()).character;
+        body = imported(withMeshes(split, clothes, false)).character;
+        garment = imported(withMeshes(split, clothes, true)).character;
     }
 
     void play(const std::string& clip, double time)
@@ -96,10 +90,9 @@ TEST(GarmentsOfModelsTest, aBodyInItsClothesIsTheWholeModel)
     KnightsClothes knight;
     ASSERT_TRUE(knight.whole && knight.body && knight.garment);
     const std::shared_ptr<const AnimationSet> bare = knight.body->getController().sharedSet();
-    const Result<WornGarment> worn = knight.body->wear(knight.garment);
-    ASSERT_TRUE(worn) << worn.error().message;
-    EXPECT_TRUE(worn.value().leftOut.empty());
-    EXPECT_EQ(worn.value().addedEntries, 3u) << "of the rigid parts on the head, the chest and a hand";
+    const WornGarment worn = valueOf(knight.body->wear(knight.garment));
+    EXPECT_TRUE(worn.leftOut.empty());
+    EXPECT_EQ(worn.addedEntries, 3u) << "of the rigid parts on the head, the chest and a hand";
     ASSERT_EQ(knight.body->getNumChildren(), knight.whole->getNumChildren());
     for (const char* clip : clips)
         for (const double share : {0.0, 0.3, 0.8})

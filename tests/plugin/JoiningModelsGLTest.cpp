@@ -31,8 +31,7 @@ std::string armText(bool isSkinned)
     const int upper = file.node("upper"), lower = file.node("lower", upper);
     const int body = file.node("body", -1, mesh);
     if (isSkinned) file.at(body).skin = file.skin({upper, lower});
-    file.animation("move");
-    file.slide(lower);
+    file.slidingClip("move", lower);
     if (!isSkinned) file.channel(body, "weights", {0, 1}, TINYGLTF_TYPE_SCALAR, {0, 1});
     return file.text();
 }

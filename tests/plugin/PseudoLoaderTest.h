@@ -33,10 +33,8 @@ protected:
         still.node("stone", -1, still.triangle());
         folder.write("still.gltf", still.text());
         arm.node("sword", arm.node("arm"), arm.triangle());
-        arm.animation("Slow slide");
-        arm.slide(0);
-        arm.animation("Slide");
-        arm.slide(0);
+        arm.slidingClip("Slow slide", 0);
+        arm.slidingClip("Slide", 0);
         folder.write("arm.gltf", arm.text());
         osg::setNotifyHandler(log);
     }

@@ -134,10 +134,8 @@ protected:
         const int hand = model.node("hand", arm);
         const int skinned = model.node("skinned", -1, model.skinnedTriangle());
         model.at(skinned).skin = model.skin({arm, hand});
-        model.animation("Slide");
-        model.slide(arm);
-        model.animation("Again");
-        model.slide(arm);
+        model.slidingClip("Slide", arm);
+        model.slidingClip("Again", arm);
         const osg::ref_ptr<osg::Node> scene =
             osgDB::readRefNodeFile(files.folder.write(name + ".gltf", model.text()), options);
         ASSERT_TRUE(scene);

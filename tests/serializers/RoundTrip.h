@@ -2,15 +2,17 @@
 #pragma once
 
 #include "gltf/Export.h"
+#include "gltf/GlbText.h"
 #include "gltf/Import.h"
+#include "support/Results.h"
 
 #include <osgGpuAnimation/mesh/geometry/MeshNames.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 
-#include <osg/NodeVisitor>
-
 #include <gtest/gtest.h>
+#include <osg/Geometry>
+#include <osg/NodeVisitor>
 
 #include <algorithm>
 #include <cmath>
@@ -138,25 +140,40 @@ inline void expectSameClips(osg::Node& expected, osg::Node& found)
     }
 }
 
-/// The scene as GLB; empty if the export fails, which fails the test. warnings: those that are expected.
+/// The scene as GLB; if the export fails, the test ends as a failure. warnings: those that are expected.
 inline std::string glbOf(const osg::Node& scene, const std::vector<std::string>& warnings = {})
 {
     gltf::Messages messages;
     gltf::Report report(messages);
-    const Result<std::string> glb = gltf::exportModel(scene, report);
-    EXPECT_TRUE(glb) << glb.error().message;
+    std::string glb = valueOf(gltf::exportModel(scene, report));
     EXPECT_EQ(messages.warnings, warnings);
-    return glb ? glb.value() : "";
+    return glb;
 }
 
-/// The scene as GLB and back. Null if one of the two fails; the import may not warn.
+/// The scene as GLB and back; the import may not warn.
 inline osg::ref_ptr<osg::Group> throughGlb(const osg::Node& scene, const std::vector<std::string>& warnings = {})
 {
-    const Result<gltf::ImportedModel> model = gltf::importModel(glbOf(scene, warnings), "", {});
-    EXPECT_TRUE(model) << model.error().message;
-    if (!model) return nullptr;
-    EXPECT_EQ(model.value().messages.warnings, std::vector<std::string>());
-    return model.value().root;
+    const gltf::ImportedModel model = valueOf(gltf::importModel(glbOf(scene, warnings), "", {}));
+    EXPECT_EQ(model.messages.warnings, std::vector<std::string>());
+    return model.root;
+}
+
+/// warnings: those that are expected.
+inline gltf::GlbParts exported(const osg::Node& scene, const std::vector<std::string>& warnings = {})
+{
+    return gltf::GlbParts(glbOf(scene, warnings));
+}
+
+/// A triangle in the x-z plane.
+template <typename Geometry = osg::Geometry>
+osg::ref_ptr<Geometry> plainTriangle(const std::string& name)
+{
+    osg::ref_ptr<Geometry> made = new Geometry;
+    made->setName(name);
+    const osg::Vec3 corners[] = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}};
+    made->setVertexArray(new osg::Vec3Array(3, corners));
+    made->addPrimitiveSet(new osg::DrawArrays(GL_TRIANGLES, 0, 3));
+    return made;
 }
 
 } // namespace osgGpuAnimation

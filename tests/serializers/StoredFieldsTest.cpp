@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "serializers/StoredTest.h"
 #include "support/Limb.h"
-#include <osgGpuAnimation/animation/JointPose.h>
-#include <osgGpuAnimation/animation/LayerSnapshot.h>
+#include "support/Results.h"
 
 #include <osgGpuAnimation/animation/AnimationLayer.h>
+#include <osgGpuAnimation/animation/JointPose.h>
+#include <osgGpuAnimation/animation/LayerSnapshot.h>
 #include <osgGpuAnimation/animation/RootMotion.h>
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
+#include <osgGpuAnimation/looks/Environment.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
@@ -17,7 +19,10 @@
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
 #include <osgGpuAnimation/nodes/SpringBones.h>
 
+#include <osg/MatrixTransform>
+
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <tuple>
@@ -43,8 +48,7 @@ protected:
         model.node("flag", arm, flag);
         for (const char* name : {"one", "two", "three"})
         {
-            model.animation(name);
-            model.slide(arm);
+            model.slidingClip(name, arm);
         }
         readModel(model);
         StoredSceneTest::SetUp();
@@ -73,6 +77,13 @@ auto fieldsOf(const LayerSnapshot::ActiveSpace& space)
     return std::make_tuple(space.parameter.x, space.parameter.y, space.phase, space.isReturning, space.isFresh);
 }
 
+auto fieldsOf(const RootMotionCurve::Key& key)
+{
+    const auto& [displacement, pivot, yaw] = key;
+    return std::make_tuple(displacement.value, displacement.in, displacement.out, pivot.value, pivot.in, pivot.out,
+                           yaw);
+}
+
 template <typename Element>
 void expectSameFields(const std::vector<Element>& found, const std::vector<Element>& expected)
 {
@@ -93,9 +104,7 @@ TEST_F(StoredFieldsTest, ofALayer)
                          {0, 0.625, 2.0, LoopMode::PingPong, true, false, 0.875, 0.1875, 1, 0, 1, 0.4375},
                          {2, 0.6875, 2.5, LoopMode::PingPong, true, false, 1.0, 0.3125, 1, 0, 2, 0.5625}};
     const std::vector<BlendSpace::Position> places{{"two", 0.0, 0.0}, {"one", 2.0, 0.5}, {"three", 0.25, 3.0}};
-    const auto space = BlendSpace::create(set, places);
-    ASSERT_TRUE(space) << space.error().message;
-    layer.spaces.push_back({space.value(), glm::dvec2(0.75, 1.25), 0.40625, true, false});
+    layer.spaces.push_back({valueOf(BlendSpace::create(set, places)), glm::dvec2(0.75, 1.25), 0.40625, true, false});
     layer.crossfade = {0.125, 0.875, 2.5, 0.75, FadeCurve::Smooth};
     layer.weight = {0.375, 0.625, 1.5, 0.25, FadeCurve::Linear};
     layer.poseShare = {0.3125, 0.6875, 3.5, 0.5, FadeCurve::Smooth};
@@ -110,8 +119,7 @@ TEST_F(StoredFieldsTest, ofALayer)
     ASSERT_TRUE(pose.setTranslation(0, {1, 2, 3}));
     layer.pose = pose.tracks();
     AnimationLayer& over = character().getController().layer(1);
-    const Result<void> restored = layer.restoreTo(over);
-    ASSERT_TRUE(restored) << restored.error().message;
+    ASSERT_EQ(errorOf(layer.restoreTo(over)), "");
     const LayerSnapshot expected = LayerSnapshot::of(over); // what the layer keeps
     EXPECT_TRUE(fieldsOf(expected.spaces.at(0)) == fieldsOf(layer.spaces[0]));
     expectSameFields(expected.activeClips, layer.activeClips);
@@ -165,11 +173,7 @@ TEST_F(StoredFieldsTest, ofRootMotion)
     }
     parts.markers = {{1.25, "step"}, {1.5, ""}};
     parts.rootMotion = std::make_shared<const RootMotionCurve>(curve);
-    const Result<Clip> clip = Clip::create(parts);
-    ASSERT_TRUE(clip) << clip.error().message;
-    const auto moving = set.withClips({clip.value()});
-    ASSERT_TRUE(moving) << moving.error().message;
-    ASSERT_TRUE(character().setAnimationSet(moving.value()));
+    ASSERT_TRUE(character().setAnimationSet(valueOf(set.withClips({valueOf(Clip::create(parts))}))));
     for (const char* format : storedFormats)
     {
         SCOPED_TRACE(format);
@@ -190,14 +194,7 @@ TEST_F(StoredFieldsTest, ofRootMotion)
         ASSERT_EQ(motion.keys.size(), 2u);
         for (std::size_t key = 0; key < 2; ++key)
         {
-            const RootMotionCurve::Key &is = motion.keys[key], &was = curve.keys[key];
-            EXPECT_EQ(is.yaw, was.yaw);
-            EXPECT_TRUE(is.displacement.value == was.displacement.value && is.displacement.in == was.displacement.in &&
-                        is.displacement.out == was.displacement.out)
-                << key;
-            EXPECT_TRUE(is.pivot.value == was.pivot.value && is.pivot.in == was.pivot.in &&
-                        is.pivot.out == was.pivot.out)
-                << key;
+            EXPECT_TRUE(fieldsOf(motion.keys[key]) == fieldsOf(curve.keys[key])) << key;
         }
     }
 }
@@ -206,10 +203,8 @@ TEST_F(StoredFieldsTest, ofConstraints)
 {
     LookAt look{"look", {"hips", "spine"}, {0.25f, 0.75f}, {1, 0, 0}, {0, 0.5f, 2}, {0.1f, 0.2f, 0.3f}, 1.5f, 0.5f};
     TwoBoneIk limb{"reach", "hips", "spine", "hand", {0.5f, 0, 1}, 0.875f};
-    const auto set =
-        limbOf({jointAt("hips", {0, 1, 0}), jointAt("spine", {0, 1, 0}), jointAt("hand", {0, 1, 0.1f})}, {look, limb});
-    ASSERT_TRUE(set) << set.error().message;
-    const osg::ref_ptr<AnimatedCharacter> made = new AnimatedCharacter(set.value());
+    const osg::ref_ptr<AnimatedCharacter> made = new AnimatedCharacter(valueOf(limbOf(
+        {jointAt("hips", {0, 1, 0}), jointAt("spine", {0, 1, 0}), jointAt("hand", {0, 1, 0.1f})}, {look, limb})));
     ConstraintHandle handle = made->getController().constraint("reach");
     ASSERT_TRUE(handle.setTarget({0.5f, 2, 0.25f}) && handle.setWeight(0.625f) && handle.setPole({3, 4, 5}) &&
                 handle.setTwist(0.375f) && handle.setRotation({0, 0.6f, 0, 0.8f}));
@@ -437,6 +432,119 @@ TEST_F(StoredFieldsTest, ofSprings)
         }
 }
 
+/// Surroundings in OSG's own formats.
+class StoredEnvironmentTest : public StoredSceneTest
+{
+protected:
+    void SetUp() override
+    {
+        environment->setIntensity(0.7f);
+        environment->setRotation(1.3f);
+        environment->setToneMapping(true);
+        environment->setName("surroundings");
+        environment->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::ON);
+        environment->addChild(new osg::MatrixTransform(osg::Matrix::translate(1, 2, 3)));
+        StoredSceneTest::SetUp();
+    }
+
+    /// The environment from a file of that format; null if it cannot be read.
+    osg::ref_ptr<Environment> read(const char* format) const
+    {
+        return dynamic_cast<Environment*>(files.throughFile(*environment, format).get());
+    }
+
+    /// Colours that differ, without a file's name, so that OSG stores the pixels.
+    static osg::ref_ptr<osg::Image> picture(int width, int height)
+    {
+        osg::ref_ptr<osg::Image> image = new osg::Image;
+        image->allocateImage(width, height, 1, GL_RGB, GL_UNSIGNED_BYTE, 1);
+        for (unsigned int i = 0; i < image->getTotalSizeInBytes(); ++i)
+            image->data()[i] = static_cast<unsigned char>(11 * i);
+        return image;
+    }
+
+    static bool haveSamePixels(const osg::Image& a, const osg::Image& b)
+    {
+        return a.getTotalSizeInBytes() == b.getTotalSizeInBytes() &&
+               std::memcmp(a.data(), b.data(), a.getTotalSizeInBytes()) == 0;
+    }
+
+    const osg::ref_ptr<Environment> environment = new Environment;
+};
+
 } // namespace
+
+TEST_F(StoredEnvironmentTest, settingsChildrenPanoramasAndFacesAreKept)
+{
+    const osg::ref_ptr<osg::Image> panorama = picture(8, 4);
+    const osg::ref_ptr<osg::TextureCubeMap> faces = new osg::TextureCubeMap;
+    for (unsigned int face = 0; face < 6; ++face)
+    {
+        const osg::ref_ptr<osg::Image> image = picture(4, 4);
+        image->data()[0] = static_cast<unsigned char>(face);
+        faces->setImage(face, image);
+    }
+    for (const char* format : storedFormats)
+        for (const char* kind : {"studio", "panorama", "faces"})
+        {
+            SCOPED_TRACE(std::string(kind) + ", " + format);
+            const bool hasPanorama = *kind == 'p', hasFaces = *kind == 'f';
+            ASSERT_TRUE(!hasPanorama || environment->setPanorama(panorama));
+            ASSERT_TRUE(!hasFaces || environment->setFaces(faces));
+            const osg::ref_ptr<Environment> copy = read(format);
+            ASSERT_TRUE(copy);
+            EXPECT_EQ(copy->getIntensity(), 0.7f);
+            EXPECT_EQ(copy->getRotation(), 1.3f);
+            EXPECT_TRUE(copy->getToneMapping());
+            EXPECT_EQ(copy->getNumChildren(), 1u);
+            ASSERT_TRUE(copy->getStateSet());
+            EXPECT_EQ(copy->getStateSet()->getMode(GL_LIGHTING), osg::StateAttribute::ON);
+            ASSERT_EQ(copy->getPanorama() != nullptr, hasPanorama);
+            ASSERT_EQ(copy->getFaces() != nullptr, hasFaces);
+            EXPECT_TRUE(!hasPanorama || haveSamePixels(*copy->getPanorama(), *panorama));
+            for (unsigned int face = 0; hasFaces && face < 6; ++face)
+                EXPECT_TRUE(haveSamePixels(*copy->getFaces()->getImage(face), *faces->getImage(face))) << face;
+            // What is made of the pictures has 4.7 MB.
+            EXPECT_LT(std::filesystem::file_size(files.folder.file(std::string("scene.") + format)), 20000u);
+            environment->setStudio();
+        }
+    EXPECT_EQ(log->text, "");
+}
+
+TEST_F(StoredEnvironmentTest, aPictureThatIsNoLongerThereLeavesTheStudio)
+{
+    const osg::ref_ptr<osg::Image> panorama = picture(8, 4);
+    panorama->setFileName("no_longer_there.png");
+    panorama->setWriteHint(osg::Image::EXTERNAL_FILE);
+    ASSERT_TRUE(environment->setPanorama(panorama));
+    for (const char* format : storedFormats)
+    {
+        SCOPED_TRACE(format);
+        log->text.clear();
+        const osg::ref_ptr<Environment> copy = read(format);
+        ASSERT_TRUE(copy);
+        EXPECT_EQ(copy->getPanorama(), nullptr);
+        EXPECT_NE(log->text.find("surroundings are the studio: a panorama"), std::string::npos) << log->text;
+        EXPECT_EQ(copy->getIntensity(), 0.7f);
+        EXPECT_EQ(copy->getNumChildren(), 1u);
+    }
+}
+
+TEST_F(StoredEnvironmentTest, settingsOutOfRangeMakeTheFileUnreadable)
+{
+    const std::pair<const char*, const char*> faults[] = {
+        {"Surroundings -1 ", "osgGpuAnimation: surroundings of the intensity -1"},
+        {"Surroundings nan ", "osgGpuAnimation: surroundings of the intensity nan"},
+        {"Surroundings 1e300 ", "osgGpuAnimation: surroundings of the intensity 1000000"},
+        {"Surroundings many ", "expected a number, found \"many\""},
+    };
+    for (const auto& [fault, message] : faults)
+    {
+        log->text.clear();
+        const std::string text = replaced(textOf(*environment), "Surroundings 0[^ ]* ", fault);
+        EXPECT_EQ(osgDB::readRefNodeFile(files.folder.write("faulty.osgt", text)), nullptr) << fault;
+        EXPECT_NE(log->text.find(message), std::string::npos) << log->text;
+    }
+}
 
 } // namespace osgGpuAnimation

@@ -77,8 +77,7 @@ protected:
         model.node("sword", arm, model.triangle());
         const int skinned = model.node("skinned", -1, model.skinnedTriangle());
         model.at(skinned).skin = model.skin({arm, model.node("hand", arm)});
-        model.animation("Slow slide");
-        model.slide(arm);
+        model.slidingClip("Slow slide", arm);
         model.animation("");
         model.channel(arm, "rotation", {0, 2}, TINYGLTF_TYPE_VEC4, {0, 0, 0, 1, 0, 1, 0, 0});
         readModel(model);

@@ -11,6 +11,7 @@
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
+#include <osg/ArgumentParser>
 #include <osgDB/ReadFile>
 #include <osgViewer/Viewer>
 
@@ -263,27 +264,17 @@ struct Arguments
 {
     double seconds = 600.0;
     unsigned int seed = 1;
-    std::size_t field = 0; ///< instances
+    unsigned int field = 0; ///< instances
     std::string file;
 };
 
 bool parse(int count, char** words, Arguments& arguments)
 {
-    for (int i = 1; i < count; ++i)
-    {
-        const std::string word = words[i];
-        const bool hasValue = i + 1 < count;
-        if (word == "--seconds" && hasValue)
-            arguments.seconds = std::atof(words[++i]);
-        else if (word == "--seed" && hasValue)
-            arguments.seed = static_cast<unsigned int>(std::atoi(words[++i]));
-        else if (word == "--field" && hasValue)
-            arguments.field = static_cast<std::size_t>(std::max(0, std::atoi(words[++i])));
-        else if (word[0] != '-' && arguments.file.empty())
-            arguments.file = word;
-        else
-            return false;
-    }
+    osg::ArgumentParser parser(&count, words);
+    parser.read("--seconds", arguments.seconds);
+    parser.read("--seed", arguments.seed);
+    parser.read("--field", arguments.field);
+    if (parser.argc() == 2) arguments.file = parser[1];
     return !arguments.file.empty() && arguments.seconds > 0.0 && arguments.field <= AnimatedCrowd::maxInstances;
 }
 

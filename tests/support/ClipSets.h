@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/animation/PoseInstruction.h>
 #include <osgGpuAnimation/authoring/ClipBuilder.h>
+
+#include <layout.glsl>
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -39,6 +43,29 @@ inline std::shared_ptr<const AnimationSet> setOf(const Skeleton& skeleton, std::
     return AnimationSet::create({skeleton, {}, {}, std::move(morphs), std::move(clips)}).value();
 }
 
+/// A controller that plays a clip, by name or number, or a blend space of its set from that time (seconds) on.
+template <typename Clip>
+AnimationController playing(std::shared_ptr<const AnimationSet> set, const Clip& clip, double time = 0.0)
+{
+    AnimationController controller(std::move(set));
+    EXPECT_TRUE(controller.play(clip));
+    EXPECT_TRUE(time == 0.0 || controller.seek(time));
+    return controller;
+}
+
+/// Joints one below the other, each a unit along x of its parent and of that scale.
+inline std::vector<Joint> chainOf(int count, float scale = 1.0f)
+{
+    std::vector<Joint> joints;
+    for (int joint = 0; joint < count; ++joint)
+    {
+        joints.push_back({"joint " + std::to_string(joint), joint - 1, {}, joint});
+        joints.back().rest.translation.x = 1.0f;
+        joints.back().rest.scale = glm::vec4(glm::vec3(scale), 0.0f);
+    }
+    return joints;
+}
+
 /// A clip in which "root" moves from x = 0 to x = 1 and "tip", its child, from x = 0 to x = 2.
 struct SlidingClip
 {
@@ -63,6 +90,33 @@ inline std::shared_ptr<const AnimationSet> makeSlidingSet(const std::vector<Slid
         clips.push_back(clipOf(skeleton, channels, each.name).withMarkers(each.markers).value());
     }
     return setOf(skeleton, std::move(clips));
+}
+
+/// One joint whose scale at rest is negative, 0 and positive, and a clip of one second that doubles the first axis,
+/// raises the second, halves the third, and turns by 170 degrees about z.
+inline std::shared_ptr<const AnimationSet> makeAdditiveExtremes()
+{
+    Joint joint;
+    joint.rest.scale = glm::vec4(-1, 0, 2, 0);
+    const Skeleton skeleton = Skeleton::create({joint}).value();
+    const double half = 85.0 / 180.0 * std::acos(-1.0);
+    const auto linear = Channel::Interpolation::Linear;
+    const std::vector<double> turn{0, 0, 0, 1, 0, 0, std::sin(half), std::cos(half)};
+    return setOf(skeleton, {clipOf(skeleton, {{Channel::Path::Scale, linear, 0, {0, 1}, {-1, 0, 2, -2, 3, 1}},
+                                              {Channel::Path::Rotation, linear, 0, {0, 1}, turn}})});
+}
+
+/// The rest pose, and the end of the clip added to it so many times, at most 7, measured from the clip's beginning.
+inline PoseInstruction addedTimes(const AnimationSet& set, std::size_t times)
+{
+    const auto first = static_cast<std::uint32_t>(set.firstKeyframe(0));
+    PoseInstruction instruction;
+    for (std::size_t i = 0; i < times; ++i)
+    {
+        instruction.samples[instruction.sampleCount++] = {first, 0.0f, 1.0f, POSE_SAMPLE_REFERENCE};
+        instruction.samples[instruction.sampleCount++] = {first + 1, 0.0f, 1.0f, POSE_SAMPLE_ADDITIVE};
+    }
+    return instruction;
 }
 
 } // namespace osgGpuAnimation

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "support/ClipSets.h"
 #include "support/ReferencePose.h"
+
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/Channel.h>
 
@@ -60,14 +62,11 @@ struct RandomCharacter
 
     Clip clip(const Skeleton& skeleton) const
     {
-        ClipBuilder builder(skeleton, morphs);
-        for (Channel channel : channels)
-        {
+        std::vector<Channel> mapped = channels;
+        for (Channel& channel : mapped)
             if (channel.path != Channel::Path::Weights)
                 channel.target = skeleton.jointOfInput(static_cast<std::size_t>(channel.target));
-            if (!builder.add(channel)) return ClipBuilder(skeleton, {}).build("failed");
-        }
-        return builder.build("random");
+        return clipOf(skeleton, mapped, "random", morphs);
     }
 
     /// The expected value of a joint or morph.

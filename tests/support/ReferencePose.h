@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/authoring/ClipBuilder.h>
 #include <osgGpuAnimation/math/Hermite.h>
 
@@ -11,10 +12,11 @@
 #include <cstddef>
 #include <vector>
 
-/// Evaluates a channel by glTF 2.0 (section 3.11, appendix C), in double precision and directly from its keys: the
-/// reference for clips. It shares no code with them; only the Channel struct, its input.
 namespace osgGpuAnimation::reference
 {
+
+/// Evaluates a channel by glTF 2.0 (section 3.11, appendix C), in double precision and directly from its keys: the
+/// reference for clips. It shares no code with them; only the Channel struct, its input.
 
 using Numbers = std::vector<double>;
 
@@ -101,5 +103,27 @@ inline glm::dmat4 localMatrix(const Numbers& t, const Numbers& q, const Numbers&
     m[3] = glm::dvec4(t[0], t[1], t[2], 1);
     return m;
 }
+
+/// Evaluates a PoseInstruction in double precision, directly from the set's keyframes: the reference for the mix stage
+/// and its CPU twin. It shares no code with them.
+
+/// The numbers of one track: three of translation, four of rotation, three of scale; a weight block has all twelve.
+struct Track
+{
+    glm::dvec4 translation{0.0}, rotation{0.0}, scale{0.0};
+};
+
+struct BlendedPose
+{
+    std::vector<Track> tracks;
+    /// The smallest margin of any choice of the shorter rotation: below about 1e-5 single precision may choose the
+    /// other one.
+    double closestDecision = 1.0;
+
+    /// The palette entries of joints; entries of weight blocks hold the weights.
+    std::vector<glm::dmat4> palette(const AnimationSet& set) const;
+};
+
+BlendedPose blend(const AnimationSet& set, const PoseInstruction& instruction);
 
 } // namespace osgGpuAnimation::reference

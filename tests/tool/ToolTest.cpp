@@ -1,21 +1,37 @@
 // SPDX-License-Identifier: MIT
+#include "support/PeakMemory.h"
+#include "support/Process.h"
+#include "support/ScratchFolder.h"
+#include "tool/SmallGltf.h"
 #include "tool/ToolRuns.h"
 
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <osg/Version>
 #include <osgDB/ReadFile>
 #include <osgDB/Registry>
 #include <osgDB/WriteFile>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
+#include <fstream>
 #include <regex>
 #include <set>
 #include <sstream>
+#include <string>
 #include <utility>
+#include <vector>
+
+#include <pty.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 namespace osgGpuAnimation
 {
+
 namespace
 {
 
@@ -366,6 +382,116 @@ TEST_F(ToolTest, poseLikeAnswersItsOwnDocument)
     outputOf({"pose", "FLAG", "--clip", "1", "--time", "0.25", "--evaluator", "cpu", "-o", first});
     outputOf({"pose", "FLAG", "--like", first, "--evaluator", "cpu", "-o", second});
     EXPECT_EQ(json::parse(std::ifstream(second)), json::parse(std::ifstream(first)));
+}
+
+namespace
+{
+
+/// What the program writes to its terminal.
+std::string terminalOf(const std::vector<std::string>& arguments)
+{
+    int terminal = -1;
+    const pid_t child = forkpty(&terminal, nullptr, nullptr, nullptr);
+    if (child == 0)
+    {
+        std::vector<char*> words;
+        for (const std::string& argument : arguments)
+            words.push_back(const_cast<char*>(argument.c_str()));
+        words.push_back(nullptr);
+        execv(words.front(), words.data());
+        _exit(127);
+    }
+    // It works for 0.1 s at a time and then stands still, so that the work takes long on a fast machine, too.
+    int status = -1;
+    while (waitpid(child, &status, WNOHANG) == 0)
+    {
+        usleep(100000);
+        kill(child, SIGSTOP);
+        usleep(600000);
+        kill(child, SIGCONT);
+    }
+    std::string written;
+    char bytes[4096];
+    for (ssize_t count; (count = read(terminal, bytes, sizeof bytes)) > 0;)
+        written.append(bytes, static_cast<std::size_t>(count));
+    close(terminal);
+    EXPECT_EQ(status, 0) << written;
+    return written;
+}
+
+/// 30,000 poses in a file: more than a tenth of a second of work.
+std::vector<std::string> longWork(const ScratchFolder& folder)
+{
+    std::vector<std::string> arguments{
+        OSGGPUANIM,    "pose", folder.write("flag.gltf", swingingFlag()), "-o", folder.file("poses.json"),
+        "--evaluator", "cpu"};
+    for (int time = 0; time < 30000; ++time)
+        arguments.insert(arguments.end(), {"--time", std::to_string(0.0001 * time)});
+    return arguments;
+}
+
+TEST(ProgressTest, longWorkShowsALineOnATerminalAndClearsIt)
+{
+    const ScratchFolder folder;
+    const std::string written = terminalOf(longWork(folder));
+    EXPECT_NE(written.find("computing poses: "), std::string::npos) << written;
+    EXPECT_NE(written.find(" of 30000, "), std::string::npos) << written;
+    const std::string clear = "\r\x1b[K";
+    ASSERT_GE(written.size(), clear.size());
+    EXPECT_EQ(written.substr(written.size() - clear.size()), clear);
+}
+
+TEST(ProgressTest, withoutATerminalLongWorkShowsNothing)
+{
+    const ScratchFolder folder;
+    std::vector<std::string> arguments = longWork(folder);
+    arguments.erase(arguments.begin());
+    const Process done = Process::run(OSGGPUANIM, arguments);
+    EXPECT_EQ(done.status, 0);
+    EXPECT_EQ(done.err + done.out, "");
+}
+
+using nlohmann::json;
+
+const std::string faultyFiles = std::string(OSGGPUANIMATION_SHARED_ASSETS) + "/bad_gltf/";
+
+bool names(const json& entry, const std::string& said)
+{
+    const std::vector<std::string> patterns = entry["message_any"];
+    return std::any_of(patterns.begin(), patterns.end(),
+                       [&](const std::string& pattern)
+                       { return std::regex_search(said, std::regex(pattern, std::regex::icase)); });
+}
+
+/// Expects status 0 or 1, and a message about the element if the entry asks for one.
+void expectAnswer(const Process& inspect, const json& entry)
+{
+    const std::string said = inspect.err + inspect.out;
+    ASSERT_TRUE(inspect.status == 0 || inspect.status == 1) << "status " << inspect.status << ": " << said;
+    const json accepted = entry.value("accept", json::array({entry["expect"]}));
+    const char* const outcome = inspect.status == 1 ? "error" : entry["expect"] == "valid" ? "valid" : "tolerate";
+    EXPECT_EQ(std::count(accepted.begin(), accepted.end(), outcome), 1) << outcome << ": " << said;
+    EXPECT_TRUE(entry["expect"] == "valid" || entry.value("silent", false) || names(entry, said)) << said;
+    EXPECT_LT(inspect.seconds, mostSeconds);
+    if (memoryIsMeasurable)
+    {
+        EXPECT_LT(inspect.peakMebibytes, mostMebibytes);
+    }
+}
+
+} // namespace
+
+TEST(ToolFaultsTest, inspectAnswersFaultyFilesAsExpected)
+{
+    std::ifstream list(faultyFiles + "expected.json");
+    if (!list) GTEST_SKIP() << "there is no " << faultyFiles << "expected.json";
+    const json expected = json::parse(list);
+    EXPECT_EQ(expected.size(), 293u);
+    for (const auto& [name, entry] : expected.items())
+    {
+        SCOPED_TRACE(name);
+        expectAnswer(Process::run(OSGGPUANIM, {"inspect", faultyFiles + name}), entry);
+    }
 }
 
 } // namespace osgGpuAnimation

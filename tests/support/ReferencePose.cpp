@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "support/ReferenceBlend.h"
+#include "support/ReferencePose.h"
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/JointPose.h>

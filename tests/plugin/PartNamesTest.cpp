@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "gltf/GlbText.h"
 #include "gltf/PointerFile.h"
-#include "gltf/SplitModel.h"
 #include "plugin/SharedAssets.h"
 #include "serializers/RoundTrip.h"
 #include "serializers/StoredScene.h"
@@ -167,9 +167,9 @@ std::string levels(bool isMoving)
 std::string bytesOf(const std::string& model)
 {
     if (modelFile(model).empty()) return "";
-    SplitModel split(readBytes(modelFile(model)));
-    if (split.document().contains("animations")) split.document()["animations"] = {split.document()["animations"][0]};
-    return split.whole();
+    GlbParts parts(readBytes(modelFile(model)));
+    if (parts.json.contains("animations")) parts.json["animations"] = {parts.json["animations"][0]};
+    return parts.whole();
 }
 
 struct NamesCase

@@ -8,11 +8,11 @@
 // colour. Attributes are bound to the locations of layout.glsl; SkinnedGeometry sets the uniforms when it draws.
 //
 // OSG's shader defines (StateSet::setDefine, see applySkinDefines) remove parts that a mesh does not need, since some
-// drivers (llvmpipe) run both sides of every branch. Without the defines the uniforms decide. SkinnedGeometry defines
-// POSE_SKINNED: without it, so for all other meshes, the functions change nothing.
+// drivers (llvmpipe) run both sides of every branch. Without the defines the uniforms decide. A SkinnedGeometry has
+// POSE_INFLUENCES or POSE_SKINNED: without them, so for all other meshes, the functions change nothing.
 #pragma import_defines(POSE_SKINNED, POSE_INFLUENCES, POSE_NO_MORPHS, POSE_INSTANCED, POSE_PLACED)
 
-#ifdef POSE_SKINNED
+#if defined(POSE_SKINNED) || defined(POSE_INFLUENCES)
 
 uniform samplerBuffer posePalette; // entry e of instance i: rows at texel (e * poseStride + i) * 3
 uniform int poseStride;

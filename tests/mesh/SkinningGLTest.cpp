@@ -125,7 +125,7 @@ protected:
         stateSet->setAttributeAndModes(captureProgram());
         if (GetParam().hasDefines) applySkinDefines(*stateSet, mesh.getInfluenceCount(), GetParam().morph >= 0);
         state().pushStateSet(stateSet);
-        state().pushStateSet(mesh.meshState());
+        if (osg::StateSet* ofMesh = mesh.meshState()) state().pushStateSet(ofMesh);
         state().apply();
 
         const osg::GLExtensions* gl = state().get<osg::GLExtensions>();

@@ -5,6 +5,7 @@
 #include <osg/observer_ptr>
 #include <osg/State>
 
+#include <atomic>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -14,6 +15,8 @@ namespace osgGpuAnimation
 
 namespace
 {
+
+std::atomic<bool> hasHooks{false};
 
 struct Function
 {
@@ -58,6 +61,7 @@ void ShaderHook::set(Place place, const std::string& text)
     _text = text;
     const bool isDefined = text.find(function.name) != std::string::npos;
     _shader = isDefined ? shaderOf(function, text) : nullptr;
+    if (isDefined) hasHooks = true;
     if (isDefined || text.empty()) return;
     OSG_WARN << "osgGpuAnimation: a ShaderHook is left out: expected a definition of " << function.declaration
              << ", found none" << std::endl;
@@ -74,6 +78,11 @@ int ShaderHook::compare(const osg::StateAttribute& other) const
     COMPARE_StateAttribute_Parameter(_place);
     COMPARE_StateAttribute_Parameter(_shader);
     return 0;
+}
+
+bool ShaderHook::exists()
+{
+    return hasHooks;
 }
 
 osg::Shader* ShaderHook::applied(const osg::State& state, Place place)

@@ -63,7 +63,9 @@ public:
     const std::string& getText() const { return _text; } ///< as given
     /// Null: no function.
     osg::Shader* getShader() const { return _shader.get(); }
-    /// The hook that counts in the present state; null: no function.
+    /// False: no hook with a text has been created yet.
+    static bool exists();
+    /// The hook that applies in the present state; null: no function.
     static osg::Shader* applied(const osg::State& state, Place place);
 
 protected:

@@ -118,15 +118,13 @@ void SkinnedGeometry::accept(osg::NodeVisitor& visitor)
     const MeshDrawScope* scope = cullVisitor ? MeshDrawScope::current() : nullptr;
     if (scope && posedMeshSource(visitor) == &scope->source()) return scope->draw(*this);
     std::optional<BoxNearFar> boxes;
-    if (cullVisitor)
-    {
-        boxes.emplace(*cullVisitor);
-        cullVisitor->pushStateSet(meshState());
-    }
+    if (cullVisitor) boxes.emplace(*cullVisitor);
+    osg::StateSet* state = cullVisitor ? meshState() : nullptr;
+    if (state) cullVisitor->pushStateSet(state);
     visitor.pushOntoNodePath(this);
     visitor.apply(static_cast<osg::Drawable&>(*this));
     visitor.popFromNodePath();
-    if (cullVisitor) cullVisitor->popStateSet();
+    if (state) cullVisitor->popStateSet();
 }
 
 osg::StateSet* SkinnedGeometry::meshState() const
@@ -134,8 +132,10 @@ osg::StateSet* SkinnedGeometry::meshState() const
     static const osg::ref_ptr<osg::StateSet> white = makeMeshState(Colors::White),
                                              ofArray = makeMeshState(Colors::Array),
                                              ofTargets = makeMeshState(Colors::Targets);
+    static const std::string influences = "POSE_INFLUENCES";
     const Colors colors = getColors();
-    if (colors == Colors::White) return white;
+    if (colors == Colors::White)
+        return _stateset && _stateset->getDefineList().count(influences) ? nullptr : white.get();
     return colors == Colors::Array ? ofArray : ofTargets;
 }
 
@@ -146,11 +146,12 @@ osg::BoundingBox SkinnedGeometry::computeBoundingBox() const
 
 void SkinnedGeometry::addTo(osgUtil::CullVisitor& visitor, osg::RefMatrix* toEye, float depth)
 {
-    visitor.pushStateSet(meshState());
-    if (osg::StateSet* own = getStateSet()) visitor.pushStateSet(own);
+    osg::StateSet* states[] = {meshState(), getStateSet()};
+    for (osg::StateSet* state : states)
+        if (state) visitor.pushStateSet(state);
     visitor.addDrawableAndDepth(this, toEye, depth);
-    if (getStateSet()) visitor.popStateSet();
-    visitor.popStateSet();
+    for (osg::StateSet* state : states)
+        if (state) visitor.popStateSet();
 }
 
 void SkinnedGeometry::setInfluences(unsigned int influenceSet, osg::Vec4usArray* entries, osg::Vec4Array* weights)

@@ -95,8 +95,8 @@ public:
         Targets, ///< white plus morph targets
     };
     Colors getColors() const; ///< from the colour array and the morph targets
-    /// The shader defines of every draw of this mesh, with its StateSet's: POSE_SKINNED and, with colours,
-    /// POSE_COLORED.
+    /// The shader defines of every draw of this mesh, besides its StateSet's: POSE_SKINNED and, with colours,
+    /// POSE_COLORED. Null: the StateSet's are enough, as without colours after applySkinDefines().
     osg::StateSet* meshState() const;
 
     /// The number of elements of the vertex array; 0 without one.

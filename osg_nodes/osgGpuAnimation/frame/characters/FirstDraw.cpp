@@ -145,7 +145,7 @@ public:
             for (const osg::ref_ptr<osg::StateSet>& stateSet : each.stateSets)
                 state.pushStateSet(stateSet);
             state.pushStateSet(frame);
-            state.pushStateSet(each.mesh->meshState());
+            if (osg::StateSet* ofMesh = each.mesh->meshState()) state.pushStateSet(ofMesh);
             state.apply();
             each.mesh->draw(renderInfo);
             state.popStateSetStackToSize(stackSize);

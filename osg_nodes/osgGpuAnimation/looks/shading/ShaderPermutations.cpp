@@ -182,6 +182,7 @@ void readLights(osg::State& state, ShaderKey& surface)
 /// The hooks that the pass calls.
 void readHooks(const osg::State& state, ShaderKey& surface)
 {
+    if (!ShaderHook::exists()) return;
     using Place = ShaderHook::Place;
     for (const Place place : {Place::EyeVertex, Place::ClipVertex, Place::Material, Place::LitColor, Place::FinalColor})
     {

@@ -155,9 +155,8 @@ InstanceRuns::InstanceRuns(osg::State& state, const PosePipeline& pipeline, cons
     static const unsigned int paletteName = osg::Uniform::getNameID("posePalette");
     const osg::Program::PerContextProgram* program = state.getLastAppliedProgramObject();
     // A program of the kit's that does not link leaves none, and OSG says why: then nothing is drawn.
-    const bool isKits = !state.getLastAppliedAttribute(osg::StateAttribute::PROGRAM);
-    _isSkinned = program ? program->getUniformLocation(paletteName) >= 0 : isKits;
-    _isDrawn = program || !isKits;
+    _isDrawn = program || state.getLastAppliedAttribute(osg::StateAttribute::PROGRAM);
+    _isSkinned = !_isDrawn || (program && program->getUniformLocation(paletteName) >= 0);
     if (binding.getPlaced()) findPlaced();
     if (!_isSkinned) _view = state.getModelViewMatrix();
     if (binding.getSerial() == 0) return;

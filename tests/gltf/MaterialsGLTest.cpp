@@ -13,6 +13,7 @@
 #include <osg/Depth>
 #include <osg/FrontFace>
 #include <osg/LightModel>
+#include <osg/LightSource>
 #include <osg/Material>
 
 #include <set>
@@ -99,13 +100,17 @@ PbrMaterial read(const tinygltf::Material& material)
 class MaterialsGLTest : public ViewerGLTest
 {
 protected:
-    /// A triangle with that material, from before. isMoving: it slides, so that it is drawn from the palette.
-    osg::ref_ptr<osg::Image> pictureOf(const tinygltf::Material& material, bool isMoving, bool isColored = false)
+    /// A triangle with that material, from before. isMoving: it slides, so that it is drawn from the palette. above:
+    /// what it is added to.
+    osg::ref_ptr<osg::Image> pictureOf(const tinygltf::Material& material, bool isMoving, bool isColored = false,
+                                       osg::Group* above = nullptr)
     {
         ModelBuilder file;
         const int mesh = file.triangle();
         if (isColored)
             file.primitive(mesh).attributes["COLOR_0"] = file.floats(TINYGLTF_TYPE_VEC3, {1, 1, 0, 1, 1, 0, 1, 1, 0});
+        if (above)
+            file.primitive(mesh).attributes["NORMAL"] = file.floats(TINYGLTF_TYPE_VEC3, {0, 0, 1, 0, 0, 1, 0, 0, 1});
         file.model.materials = {material};
         file.model.extensionsUsed = {"KHR_materials_unlit"};
         file.primitive(mesh).material = 0;
@@ -115,7 +120,20 @@ protected:
         options.noRotation = true;
         viewer().getCamera()->setViewMatrixAsLookAt({0.25, 0.25, 10}, {0.25, 0.25, 0}, {0, 1, 0});
         viewer().getCamera()->setClearColor({0, 0, 0, 1});
-        return ViewerGLTest::pictureOf(imported(file, options).root, {0.0});
+        const osg::ref_ptr<osg::Node> root = imported(file, options).root;
+        if (above) above->addChild(root);
+        return ViewerGLTest::pictureOf(above ? above : root.get(), {0.0});
+    }
+};
+
+/// OSG with the fixed pipeline, such as Debian's, causes GL errors of its own in the core profile.
+class CoreMaterialsGLTest : public InCoreProfile<MaterialsGLTest>
+{
+protected:
+    void TearDown() override
+    {
+        if (!IsSkipped() && !HasFatalFailure()) takeGLErrors();
+        InCoreProfile<MaterialsGLTest>::TearDown();
     }
 };
 
@@ -422,6 +440,30 @@ TEST_F(MaterialsGLTest, anAlphaThatEqualsTheCutoffIsDrawn)
             EXPECT_EQ(picture().pixelsDrawn() > 20, masked.isDrawn)
                 << masked.alpha << " of " << masked.cutoff << (isMoving ? ", moving" : ", still");
         }
+}
+
+// A red light from the eye.
+TEST_F(CoreMaterialsGLTest, osgsLightsShineOnFiles)
+{
+    viewer().setLightingMode(osg::View::NO_LIGHT);
+    viewer().getCamera()->getOrCreateStateSet()->clear();
+    tinygltf::Material material;
+    material.pbrMetallicRoughness.metallicFactor = 0.0;
+    for (const bool isMoving : {false, true})
+    {
+        const osg::ref_ptr<osg::LightSource> source = new osg::LightSource;
+        source->getLight()->setPosition(osg::Vec4(0, 0, 1, 0));
+        source->getLight()->setAmbient(osg::Vec4(0, 0, 0, 1));
+        source->getLight()->setDiffuse(osg::Vec4(1, 0, 0, 1));
+        source->setStateSetModes(*source->getOrCreateStateSet(), osg::StateAttribute::ON);
+        source->getStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::ON);
+        const osg::ref_ptr<osg::LightModel> dark = new osg::LightModel;
+        dark->setAmbientIntensity(osg::Vec4(0, 0, 0, 1));
+        source->getStateSet()->setAttribute(dark);
+        const osg::Vec4 found = pictureOf(material, isMoving, false, source)->getColor(32u, 32u);
+        EXPECT_GT(found.r(), 0.8f) << isMoving;
+        EXPECT_LT(found.g(), 0.02f) << isMoving;
+    }
 }
 
 TEST_F(MaterialsGLTest, withoutLightTheColorIsTheFactorTimesTheVertices)

@@ -14,11 +14,14 @@
 
 #include <osg/Fog>
 #include <osg/LightSource>
+#include <osg/ShapeDrawable>
 #include <osgFX/AnisotropicLighting>
 #include <osgFX/Cartoon>
 #include <osgFX/Outline>
 #include <osgFX/Scribe>
 #include <osgFX/SpecularHighlights>
+#include <osgShadow/ShadowedScene>
+#include <osgShadow/ShadowMap>
 #include <osgUtil/GLObjectsVisitor>
 #include <osgUtil/IncrementalCompileOperation>
 
@@ -195,13 +198,15 @@ TEST_F(ReadmeShadersGLTest, aProgramMayReadTheMaterial)
     EXPECT_NEAR(found.g(), 0.6f, 0.02f);
 }
 
-// Two lights, of which one has a position, and fog: what the kit's own program draws.
+// Two lights, of which one has a position, the shadow of a bar, and fog: what the kit's own program draws.
 TEST_F(ReadmeShadersGLTest, aProgramMayUseTheKitsLight)
 {
     std::vector<osg::ref_ptr<osg::Image>> pictures;
+    osg::ref_ptr<osg::Image> unshadowed;
     for (const bool isOurs : {true, false})
     {
-        const osg::ref_ptr<osg::Group> scene = new osg::Group;
+        const osg::ref_ptr<osg::Group> scene = new osgShadow::ShadowedScene(new osgShadow::ShadowMap);
+        scene->addChild(new osg::ShapeDrawable(new osg::Box(osg::Vec3(0.6f, -1, 0.4f), 0.3f, 0.1f, 4)));
         osg::StateSet& above = *scene->getOrCreateStateSet();
         for (const int number : {0, 1})
         {
@@ -230,13 +235,21 @@ TEST_F(ReadmeShadersGLTest, aProgramMayUseTheKitsLight)
             state.setAttributeAndModes(makeKitsLight());
             state.setDefine("DRAW_LIGHTS", "3");
             state.setDefine("DRAW_POINT_LIGHTS", "2");
+            state.setDefine("DRAW_SHADOW_MAPS", "2");
             state.setDefine("DRAW_FOG", "2");
+            const osg::ref_ptr<osg::Uniform> maps = new osg::Uniform(osg::Uniform::SAMPLER_2D_SHADOW, "shadowMaps", 7);
+            for (unsigned int unit = 1; unit <= 7; ++unit)
+                maps->setElement(unit - 1, static_cast<int>(unit));
+            state.addUniform(maps);
         }
         pictures.push_back(pictureOf(scene));
+        if (isOurs) static_cast<osgShadow::ShadowedScene&>(*scene).setShadowTechnique(nullptr);
+        if (isOurs) unshadowed = pictureOf(scene);
     }
     EXPECT_NO_GL_ERROR();
     EXPECT_EQ(Picture::pixelsDifferent(*pictures[0], *pictures[1], 0.005f), 0);
     EXPECT_GT(Picture::pixelsDrawn(*pictures[1]), 200);
+    EXPECT_GT(Picture::pixelsDifferent(*pictures[0], *unshadowed, 0.05f), 20);
 }
 
 TEST_F(ReadmeShadersGLTest, aProgramFromAboveThatDoesNotSkinIsNotTaken)

@@ -17,6 +17,7 @@
 #include <osgGpuAnimation/animation/ConstraintHandle.h>
 #include <osgGpuAnimation/animation/CrossfadeOptions.h>
 #include <osgGpuAnimation/animation/Fade.h>
+#include <osgGpuAnimation/animation/Joint.h>
 #include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/animation/JointPose.h>
 #include <osgGpuAnimation/animation/LayerSnapshot.h>

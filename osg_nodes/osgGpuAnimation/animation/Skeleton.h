@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/animation/Joint.h>
 #include <osgGpuAnimation/animation/MorphWeights.h>
 #include <osgGpuAnimation/math/JointTransform.h>
 #include <osgGpuAnimation/math/Result.h>
@@ -12,15 +13,6 @@
 
 namespace osgGpuAnimation
 {
-
-/// A node of the file that moves, or that carries a node or mesh that moves.
-struct Joint
-{
-    std::string name;    ///< not necessarily unique
-    int parent = -1;     ///< index of the parent joint, -1 for a root
-    JointTransform rest; ///< used if no clip animates the joint
-    int sourceNode = -1; ///< number of the node in the file, -1 if it has none
-};
 
 /// The joints of an AnimationSet in **level order**: all roots, then all their children, and so on. Parents come before
 /// children, and each level is one contiguous range (one flat draw on the GPU).

@@ -43,9 +43,7 @@ osg::ref_ptr<osg::Shader> makeMaterialShader()
 osg::ref_ptr<osg::Shader> makeLightShader()
 {
     constexpr std::pair<const char*, int> modes[] = {
-        {"DRAW_LIGHTS", 1},        {"DRAW_POINT_LIGHTS", 0}, {"DRAW_PUNCTUAL_LIGHTS", 0},
-        {"DRAW_SPECULAR", 1},      {"DRAW_SHADOW_MAPS", 0},  {"DRAW_SHADOW_BIAS", 0},
-        {"DRAW_SHADOW_SPLITS", 0}, {"DRAW_FOG", 0},          {"DRAW_ENCODED", 1}};
+        {"DRAW_LIGHTS", 1}, {"DRAW_POINT_LIGHTS", 0}, {"DRAW_SHADOW_MAPS", 0}, {"DRAW_FOG", 0}, {"DRAW_ENCODED", 1}};
     std::string text = std::string("#version 140\n") + materialColors + "#define GIVEN_MATERIAL\n" +
                        "#define DRAW_PUNCTUAL_LIGHTS 0\n#define DRAW_SPECULAR 1\n#define DRAW_SHADOW_BIAS 0\n" +
                        "#define DRAW_SHADOW_SPLITS 0\n";
@@ -54,7 +52,7 @@ osg::ref_ptr<osg::Shader> makeLightShader()
                 std::to_string(value) + "\n#endif\n";
     // The core profile has a headlight: the modes of lights and fog are those of the fixed pipeline.
     text += "#ifndef GL_ARB_compatibility\n";
-    for (const char* name : {"DRAW_LIGHTS", "DRAW_SHADOW_MAPS", "DRAW_FOG"})
+    for (const char* name : {"DRAW_LIGHTS", "DRAW_FOG"})
         text += std::string("#undef ") + name + "\n#define " + name + " 0\n";
     text += "#endif\n";
     for (const char* part : {shaders::color_glsl, shaders::material_glsl, shaders::pbr_glsl, shaders::environment_glsl,

@@ -164,8 +164,7 @@ void readLights(osg::State& state, ShaderKey& surface)
     for (unsigned int index = 0; index < lights.size(); ++index)
     {
         const osg::Light* light = lights[index];
-        if (isCore && !light) continue;
-        if (isCore ? !isModeOn(state, GL_LIGHT0 + index) : !state.getLastAppliedMode(GL_LIGHT0 + index)) continue;
+        if ((isCore && !light) || !isModeOn(state, GL_LIGHT0 + index)) continue;
         const auto bit = static_cast<std::uint8_t>(1u << index);
         surface.lights |= bit;
         if (!light || light->getPosition().w() == 0.0f) continue;
@@ -184,11 +183,12 @@ void readHooks(const osg::State& state, ShaderKey& surface)
 {
     if (!ShaderHook::exists()) return;
     using Place = ShaderHook::Place;
-    for (const Place place : {Place::EyeVertex, Place::ClipVertex, Place::Material, Place::LitColor, Place::FinalColor})
+    for (unsigned int number = 0; number < ShaderHook::placeCount; ++number)
     {
+        const auto place = static_cast<Place>(number);
         if (place == Place::Material && surface.isDepthOnly && !surface.isAlphaNeeded) continue;
         if (place == Place::LitColor && surface.isDepthOnly) continue;
-        surface.hooks[static_cast<std::size_t>(place)] = ShaderHook::applied(state, place);
+        surface.hooks[number] = ShaderHook::applied(state, place);
     }
 }
 

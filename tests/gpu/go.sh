@@ -19,6 +19,7 @@ unpacked=$here/unpacked # with everything that is written besides OUT
 project=$unpacked/project
 shared=$unpacked/shared
 build=$project/build
+logs=$unpacked/logs
 tool=$build/bin/osggpuanim
 mkdir -p "${OUT:=$here/out}"
 out=$(cd "$OUT" && pwd)
@@ -34,7 +35,7 @@ unpack()
 {
     [ -f "$here/pack.tar.xz" ] || fail "there is no $here/pack.tar.xz; tests/gpu/pack.sh makes it"
     rm -rf "$unpacked"
-    mkdir "$unpacked"
+    mkdir -p "$logs"
     tar -C "$unpacked" -xJf "$here/pack.tar.xz"
 }
 
@@ -110,54 +111,96 @@ timed()
     timeout --kill-after=5 $left "$@"
 }
 
-# A row of the table: begin, then try COMMAND... for each check, or other counts, then end.
+# A row of the table: begin, then try COMMAND... for each check, then end.
 begin()
 {
-    part=$1 began=$SECONDS passed=0 count=0 failed=()
+    part=$1 began=$SECONDS names=()
 }
 
-# try NAME COMMAND...
+# try NAME COMMAND...: starts the command when a processor is free.
 try()
 {
-    count=$((count + 1))
-    if timed "${@:2}" >"$unpacked/log" 2>&1; then
-        passed=$((passed + 1))
-    else
-        failed+=("$1")
-    fi
-    { echo "== $1"; cat "$unpacked/log"; } >>"$out/$part.log"
+    names+=("$1")
+    while [ "$(jobs -rp | wc -l)" -ge "$(nproc)" ]; do
+        wait -n || true
+    done
+    {
+        status=0
+        timed "${@:2}" >"$logs/$1" 2>&1 || status=$?
+        echo $status >"$logs/$1.status"
+    } &
+}
+
+# Waits for all that was tried.
+finish()
+{
+    local name
+    wait
+    for name in "${names[@]}"; do
+        { echo "== $name"; cat "$logs/$name"; } >>"$out/$part.log"
+    done
 }
 
 end()
 {
-    [ "$count" -gt 0 ] || failed+=("nothing ran")
-    [ ${#failed[@]} -eq 0 ] || faults=$((faults + 1))
-    [ ${#failed[@]} -le 12 ] || failed=("${failed[@]:0:12}" "and $((${#failed[@]} - 12)) more")
-    echo "| $part | $passed of $count | $((SECONDS - began)) s | ${failed[*]:-–} |" | tee -a "$out/table.md"
+    local name passed=0 failed=()
+    finish
+    for name in "${names[@]}"; do
+        if [ "$(<"$logs/$name.status")" -eq 0 ]; then
+            passed=$((passed + 1))
+        else
+            failed+=("$name")
+        fi
+    done
+    row "$part" "$passed" ${#names[@]} "${failed[@]}"
 }
 
+# row NAME PASSED COUNT FAILED...
+row()
+{
+    local failed=("${@:4}")
+    [ "$3" -gt 0 ] || failed+=("nothing ran")
+    [ ${#failed[@]} -eq 0 ] || faults=$((faults + 1))
+    [ ${#failed[@]} -le 12 ] || failed=("${failed[@]:0:12}" "and $((${#failed[@]} - 12)) more")
+    echo "| $1 | $2 of $3 | $((SECONDS - began)) s | ${failed[*]:-–} |" | tee -a "$out/table.md"
+}
+
+# Each program's tests in several processes, where there are processors for them; a row for each program.
 run_tests()
 {
-    local program status
+    local program process processes=$((($(nproc) + ${#tests[@]} - 1) / ${#tests[@]}))
+    begin tests
     for program in "${tests[@]}"; do
-        begin "$program"
-        status=0
-        timed "$build/bin/$program" --gtest_filter="${FILTER:-*GLTest*-ShaderLanguageGLTest.*}" >"$unpacked/log" 2>&1 ||
-            status=$?
-        cat "$unpacked/log" >>"$out/tests.log"
-        count=$(sed -nE 's/^\[=+\] Running ([0-9]+) tests? from.*/\1/p' "$unpacked/log")
-        count=${count:-0}
-        passed=$(grep -c '^\[       OK' "$unpacked/log") || true
-        # Failed and skipped tests, and the last one of a program that crashed or ran out of time.
-        sed -nE 's/^\[  (FAILED|SKIPPED) +\] ([^ ,]+\.[^ ,]+).*/\2/p' "$unpacked/log" | sort -u >"$unpacked/names"
-        mapfile -t failed <"$unpacked/names"
-        if [ $status -gt 1 ]; then
-            failed+=("$(sed -n 's/^\[ RUN      \] //p' "$unpacked/log" | tail -1): exit status $status")
-        elif [ ${#failed[@]} -eq 0 ] && { [ $status -eq 1 ] || [ "$passed" -ne "$count" ]; }; then
-            failed=("exit status $status")
-        fi
-        end
+        for ((process = 0; process < processes; ++process)); do
+            try "$program.$process" env GTEST_TOTAL_SHARDS=$processes GTEST_SHARD_INDEX=$process \
+                "$build/bin/$program" --gtest_filter="${FILTER:-*GLTest*-ShaderLanguageGLTest.*}"
+        done
     done
+    finish
+    for program in "${tests[@]}"; do
+        count_tests "$program"
+    done
+}
+
+count_tests()
+{
+    local log passed=0 count=0 failed=() ran done status
+    for log in "$logs/$1".*[0-9]; do
+        status=$(<"$log.status")
+        ran=$(sed -nE 's/^\[=+\] Running ([0-9]+) tests? from.*/\1/p' "$log")
+        done=$(grep -c '^\[       OK' "$log") || true
+        # Failed and skipped tests, and the last one of a process that crashed or ran out of time.
+        sed -nE 's/^\[  (FAILED|SKIPPED) +\] ([^ ,]+\.[^ ,]+).*/\2/p' "$log" | sort -u >"$unpacked/names"
+        mapfile -t -O ${#failed[@]} failed <"$unpacked/names"
+        if [ "$status" -gt 1 ]; then
+            failed+=("$(sed -n 's/^\[ RUN      \] //p' "$log" | tail -1): exit status $status")
+        elif [ ! -s "$unpacked/names" ] && { [ "$status" -eq 1 ] || [ "$done" -ne "${ran:-0}" ]; }; then
+            failed+=("exit status $status")
+        fi
+        count=$((count + ${ran:-0}))
+        passed=$((passed + done))
+    done
+    row "$1" $passed $count "${failed[@]}"
 }
 
 run_poses()
@@ -181,8 +224,8 @@ run_looks()
         try "$(basename "$file" .png)" \
             python3 tests/tool/check_looks.py "$tool" "$shared" "$(basename "$file" .png)" "$unpacked/pictures"
     done
-    tar -C "$unpacked" -c pictures | xz >"$out/pictures.tar.xz"
     end
+    tar -C "$unpacked" -c pictures | xz >"$out/pictures.tar.xz"
 }
 
 run_bench()

@@ -81,7 +81,7 @@ void passSurface()
     moreCoordinates.zw = transformedCoordinate(2, moreCoordinates.zw);
 #endif
 #endif
-#if DRAW_TEXTURE_MATRIX && defined(GL_ARB_compatibility)
+#if DRAW_TEXTURE_MATRIX
     textureCoordinate = (gl_TextureMatrix[0] * vec4(textureCoordinate, 0.0, 1.0)).xy;
 #endif
 }
@@ -122,7 +122,7 @@ void main()
 #if DRAW_COLOR || DRAW_ALPHA
     passSurface();
 #endif
-#if DRAW_CLIP_PLANES && defined(GL_ARB_compatibility)
+#if DRAW_CLIP_PLANES
     gl_ClipVertex = vec4(viewPosition, 1.0);
 #endif
 #ifdef HOOK_EYE_VERTEX

@@ -22,14 +22,14 @@ vec3 givenNormal;
 #define materialSurface() givenSurface
 #define materialNormal() givenNormal
 #define fixedEmission givenEmission
-#elif defined(GL_ARB_compatibility)
+#elif DRAW_FIXED_PIPELINE
 #define fixedEmission gl_FrontMaterial.emission.rgb
 #else
 #define fixedEmission materialEmission
 #endif
 
 // The state of the fixed pipeline: of GL, or in a core profile by uniforms, see ViewLights.
-#ifdef GL_ARB_compatibility
+#if DRAW_FIXED_PIPELINE
 #define lightSource gl_LightSource
 #define lightModelAmbient gl_LightModel.ambient
 #define shineColor gl_FrontMaterial.specular
@@ -82,7 +82,7 @@ vec3 surfaceColor(Surface surface, vec3 direct, vec3 ambient, float occlusion)
 }
 #endif
 
-#if defined(GL_ARB_compatibility) || DRAW_LIGHTS
+#if DRAW_FIXED_PIPELINE || DRAW_LIGHTS
 
 // The direction to the light, and its attenuation (OpenGL 2.1, section 2.14.1).
 vec3 directionTo(int index, out float strength)

@@ -28,6 +28,7 @@ namespace
 /// The vertex shader for osgAnimation's hardware mode, with its attribute names; the number of bones replaces
 /// MAX_MATRIX.
 constexpr const char* hardwareVertexShader = R"(#version 140
+#extension GL_ARB_compatibility : enable
 uniform mat4 matrixPalette[MAX_MATRIX];
 uniform uint nbBonesPerVertex;
 in vec4 boneWeight0;
@@ -52,6 +53,7 @@ void main()
 )";
 
 constexpr const char* leastVertexShader = R"(#version 140
+#extension GL_ARB_compatibility : enable
 void main()
 {
     gl_Position = gl_ModelViewProjectionMatrix * gl_Vertex;

@@ -94,6 +94,7 @@ osg::ref_ptr<osg::Program> programWithoutSkinning()
 {
     osg::ref_ptr<osg::Program> program = new osg::Program;
     program->addShader(new osg::Shader(osg::Shader::VERTEX, R"(#version 140
+        #extension GL_ARB_compatibility : enable
         uniform mat4 osg_ModelViewProjectionMatrix;
         void main() { gl_Position = gl_ModelViewProjectionMatrix * gl_Vertex; })"));
     program->addShader(new osg::Shader(osg::Shader::FRAGMENT, R"(#version 140

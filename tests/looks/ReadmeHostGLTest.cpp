@@ -48,6 +48,7 @@ public:
     explicit HostProgram(const char* color = hostFog) : _program(new osg::Program)
     {
         _program->addShader(new osg::Shader(osg::Shader::VERTEX, R"(#version 140
+            #extension GL_ARB_compatibility : enable
             void hostClipVertex(inout vec4 position, vec4 vertex);
             out vec3 viewPosition;
             void main()
@@ -103,6 +104,7 @@ public:
         if (!skins) return;
         _program->removeShader(_program->getShader(0));
         _program->addShader(new osg::Shader(osg::Shader::VERTEX, R"(#version 140
+            #extension GL_ARB_compatibility : enable
             void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal);
             void hostClipVertex(inout vec4 position, vec4 vertex);
             out vec3 viewPosition;

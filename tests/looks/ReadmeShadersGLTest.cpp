@@ -40,6 +40,7 @@ osg::ref_ptr<osg::Program> makeOwnProgram()
 osg::ref_ptr<osg::Program> program = new osg::Program;
 program->addShader(skinShader());                                          // osgGpuAnimation/looks/CharacterProgram.h
 program->addShader(new osg::Shader(osg::Shader::VERTEX, R"(#version 140
+    #extension GL_ARB_compatibility : enable
     void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal);
     out vec3 viewNormal;
     void main()

@@ -24,7 +24,7 @@ osg::ref_ptr<osg::Shader> makeSkinShader()
 
 osg::ref_ptr<osg::Shader> makeSurfaceVertexShader()
 {
-    const std::string text = std::string("#version 140\n#define DRAW_SKINNED 1\n#define DRAW_COLOR 1\n") +
+    const std::string text = shaders::version_glsl + std::string("#define DRAW_SKINNED 1\n#define DRAW_COLOR 1\n") +
                              "#define DRAW_TEXTURE_MATRIX 0\n#define DRAW_CLIP_PLANES 0\n" + shaders::color_glsl +
                              shaders::character_vert;
     return new osg::Shader(osg::Shader::VERTEX, text);
@@ -40,21 +40,20 @@ osg::ref_ptr<osg::Shader> makeMaterialShader()
                            std::string("#version 140\n") + materialColors + shaders::material_glsl);
 }
 
-osg::ref_ptr<osg::Shader> makeLightShader()
+osg::ref_ptr<osg::Shader> makeLightShader(bool isCore)
 {
     constexpr std::pair<const char*, int> modes[] = {
         {"DRAW_LIGHTS", 1}, {"DRAW_POINT_LIGHTS", 0}, {"DRAW_SHADOW_MAPS", 0}, {"DRAW_FOG", 0}, {"DRAW_ENCODED", 1}};
-    std::string text = std::string("#version 140\n") + materialColors + "#define GIVEN_MATERIAL\n" +
+    std::string text = std::string(shaders::version_glsl) + materialColors + "#define GIVEN_MATERIAL\n" +
                        "#define DRAW_PUNCTUAL_LIGHTS 0\n#define DRAW_SPECULAR 1\n#define DRAW_SHADOW_BIAS 0\n" +
                        "#define DRAW_SHADOW_SPLITS 0\n";
     for (const auto& [name, value] : modes)
         text += std::string("#pragma import_defines(") + name + ")\n#ifndef " + name + "\n#define " + name + " " +
                 std::to_string(value) + "\n#endif\n";
-    // The core profile has a headlight: the modes of lights and fog are those of the fixed pipeline.
-    text += "#ifndef GL_ARB_compatibility\n";
+    text += std::string("#define DRAW_FIXED_PIPELINE ") + (isCore ? "0\n" : "1\n");
+    // A core profile has a headlight.
     for (const char* name : {"DRAW_LIGHTS", "DRAW_FOG"})
-        text += std::string("#undef ") + name + "\n#define " + name + " 0\n";
-    text += "#endif\n";
+        if (isCore) text += std::string("#undef ") + name + "\n#define " + name + " 0\n";
     for (const char* part : {shaders::color_glsl, shaders::material_glsl, shaders::pbr_glsl, shaders::environment_glsl,
                              shaders::light_glsl, shaders::linked_light_glsl})
         text += part;
@@ -105,10 +104,10 @@ osg::ref_ptr<osg::Shader> materialShader()
     return shared.get(makeMaterialShader);
 }
 
-osg::ref_ptr<osg::Shader> lightShader()
+osg::ref_ptr<osg::Shader> lightShader(bool isCore)
 {
-    static SharedObject<osg::Shader> shared;
-    return shared.get(makeLightShader);
+    static SharedObject<osg::Shader> shared[2];
+    return shared[isCore].get([isCore] { return makeLightShader(isCore); });
 }
 
 void bindSkinAttributes(osg::Program& program)

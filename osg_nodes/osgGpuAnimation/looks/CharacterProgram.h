@@ -56,7 +56,7 @@ osg::ref_ptr<osg::Shader> materialShader();
 ///
 /// The first gives the light that a surface at viewPosition sends to the eye: with the shader define MATERIAL_PBR of
 /// applyPbrMaterial() linear radiance, else the colour of the fixed pipeline. The kit's own program reads the modes of
-/// the state; another program has shader defines for them. In a core profile it has a headlight, and no fog.
+/// the state; another program has shader defines for them. isCore: for a core profile, with a headlight and without fog.
 ///
 /// | define            | value                                                                   | without it |
 /// | ----------------- | ----------------------------------------------------------------------- | ---------- |
@@ -68,7 +68,7 @@ osg::ref_ptr<osg::Shader> materialShader();
 ///
 /// Shadow maps need an int uniform `shadowMaps` of 7 elements with the values 1 to 7, too. Lights of glTF files have no
 /// range and OpenGL's cone.
-osg::ref_ptr<osg::Shader> lightShader();
+osg::ref_ptr<osg::Shader> lightShader(bool isCore = false);
 /// Binds the attributes of the two vertex shaders to the locations of layout.glsl.
 void bindSkinAttributes(osg::Program& program);
 

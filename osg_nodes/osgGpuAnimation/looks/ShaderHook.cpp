@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/looks/ShaderHook.h>
 
+#include <ShaderSources.h>
+
 #include <osg/Notify>
 #include <osg/observer_ptr>
 #include <osg/State>
@@ -46,7 +48,7 @@ osg::ref_ptr<osg::Shader> shaderOf(const Function& function, const std::string& 
     osg::ref_ptr<osg::Shader> shader;
     if (known.lock(shader)) return shader;
     const bool hasVersion = text.find("#version") != std::string::npos;
-    shader = new osg::Shader(function.type, hasVersion ? text : "#version 140\n" + text);
+    shader = new osg::Shader(function.type, hasVersion ? text : shaders::version_glsl + text);
     shader->setName(std::string("ShaderHook ") + function.name);
     known = shader.get();
     return shader;

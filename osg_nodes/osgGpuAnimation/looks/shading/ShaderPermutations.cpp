@@ -159,19 +159,18 @@ ShaderKey::Fog fogOf(osg::State& state)
 
 void readLights(osg::State& state, ShaderKey& surface)
 {
-    const bool isCore = isCoreProfile(state);
     const auto lights = lightsOf(state);
     for (unsigned int index = 0; index < lights.size(); ++index)
     {
         const osg::Light* light = lights[index];
-        if ((isCore && !light) || !isModeOn(state, GL_LIGHT0 + index)) continue;
+        if ((surface.isCore && !light) || !isModeOn(state, GL_LIGHT0 + index)) continue;
         const auto bit = static_cast<std::uint8_t>(1u << index);
         surface.lights |= bit;
         if (!light || light->getPosition().w() == 0.0f) continue;
         surface.pointLights |= bit;
         if (dynamic_cast<const PunctualLight*>(light)) surface.punctualLights |= bit;
     }
-    if (isCore) return; // which lacks the generated coordinates of osgShadow's maps
+    if (surface.isCore) return; // which lacks the generated coordinates of osgShadow's maps
     for (unsigned int unit = 1; unit < generatedUnits; ++unit)
         if (isShadowMap(state, unit)) surface.shadowMaps |= static_cast<std::uint8_t>(1u << unit);
     surface.hasShadowBias = surface.shadowMaps != 0 && hasUniform(state, "osgShadow_ambientBias");
@@ -194,7 +193,7 @@ void readHooks(const osg::State& state, ShaderKey& surface)
 
 osg::Shader* makeShader(osg::Shader::Type type, const std::string& defines, std::initializer_list<const char*> sources)
 {
-    std::string text = "#version 140\n" + defines;
+    std::string text = shaders::version_glsl + defines;
     for (const char* source : sources)
         text += source;
     return new osg::Shader(type, text);
@@ -269,6 +268,7 @@ osg::ref_ptr<osg::Texture2D> makeWhiteTexture()
 ShaderKey ShaderKey::of(osg::State& state)
 {
     ShaderKey surface;
+    surface.isCore = isCoreProfile(state);
     surface.lights = 0;
     surface.isDepthOnly = isDefined(state, "POSE_DEPTH_ONLY") || isColorMasked(state);
     surface.isAlphaNeeded = surface.isDepthOnly && leavesPartsOut(state);
@@ -277,8 +277,8 @@ ShaderKey ShaderKey::of(osg::State& state)
     surface.hasSpecular = surface.isLit && isShiny(state);
     surface.isTextured = (!surface.isDepthOnly || surface.isAlphaNeeded) && isTexturingOn(state);
     surface.hasTextureMatrix =
-        surface.isTextured && state.getLastAppliedTextureAttribute(0, osg::StateAttribute::TEXMAT) != nullptr;
-    for (unsigned int plane = 0; plane < 6; ++plane)
+        surface.isTextured && !surface.isCore && state.getLastAppliedTextureAttribute(0, osg::StateAttribute::TEXMAT) != nullptr;
+    for (unsigned int plane = 0; plane < 6 && !surface.isCore; ++plane)
         surface.hasClipPlanes = surface.hasClipPlanes || state.getLastAppliedMode(GL_CLIP_PLANE0 + plane);
     if (surface.isLit) readLights(state, surface);
     if (!surface.isDepthOnly) surface.fog = fogOf(state);
@@ -297,7 +297,7 @@ std::string ShaderKey::defines() const
     std::string ofHooks;
     for (std::size_t place = 0; place < hooks.size(); ++place)
         if (hooks[place]) ofHooks += hookDefines[place];
-    return line("DRAW_COLOR", !isDepthOnly) + line("DRAW_ALPHA", isAlphaNeeded) + line("DRAW_LIGHTING", isLit) +
+    return line("DRAW_FIXED_PIPELINE", !isCore) + line("DRAW_COLOR", !isDepthOnly) + line("DRAW_ALPHA", isAlphaNeeded) + line("DRAW_LIGHTING", isLit) +
            line("DRAW_FLAT_NORMALS", hasFlatNormals) + line("DRAW_SPECULAR", hasSpecular) +
            line("DRAW_TEXTURE", isTextured) + line("DRAW_TEXTURE_MATRIX", hasTextureMatrix) +
            line("DRAW_CLIP_PLANES", hasClipPlanes) + line("DRAW_LIGHTS", lights) +
@@ -381,7 +381,7 @@ void ShaderPermutations::apply(osg::State& state) const
         if (surface.shadowMaps != 0) setShadowUnits(state);
         if (surface.punctualLights != 0) setPunctualLights(state, surface.punctualLights);
         setMaterial(state);
-        if (!surface.isDepthOnly && isCoreProfile(state)) setFixedPipelineUniforms(state, surface.lights);
+        if (!surface.isDepthOnly && surface.isCore) setFixedPipelineUniforms(state, surface.lights);
     }
     // The next StateSet may have other modes with the same program, which OSG would consider applied.
     state.haveAppliedAttribute(osg::StateAttribute::PROGRAM);
@@ -390,7 +390,10 @@ void ShaderPermutations::apply(osg::State& state) const
 // A compile traversal applies no defines, and every mesh that moves has some: prepareFirstDraw() compiles its programs.
 void ShaderPermutations::compileGLObjects(osg::State& state) const
 {
-    if (!_skin) variant(ShaderKey())->compileGLObjects(state);
+    if (_skin) return;
+    ShaderKey surface;
+    surface.isCore = isCoreProfile(state);
+    variant(surface)->compileGLObjects(state);
 }
 
 void ShaderPermutations::setThreadSafeRefUnref(bool threadSafe)

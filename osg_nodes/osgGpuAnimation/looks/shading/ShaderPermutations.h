@@ -31,6 +31,7 @@ struct ShaderKey
         Exp2
     };
 
+    bool isCore = false;         ///< a core profile: GL keeps no lights, materials, fog and texture matrices
     bool isDepthOnly = false;    ///< no colour is written: ColorMask or POSE_DEPTH_ONLY (see DepthPass)
     bool isAlphaNeeded = false;  ///< alphaCutoff or blending hides parts of the surface
     bool isLit = true;           ///< GL_LIGHTING, and no uniform `unlit`
@@ -58,7 +59,7 @@ struct ShaderKey
 
     auto key() const
     {
-        return std::tie(isDepthOnly, isAlphaNeeded, isLit, hasFlatNormals, hasSpecular, isTextured, hasTextureMatrix,
+        return std::tie(isCore, isDepthOnly, isAlphaNeeded, isLit, hasFlatNormals, hasSpecular, isTextured, hasTextureMatrix,
                         hasClipPlanes, lights, pointLights, punctualLights, shadowMaps, hasShadowBias, hasShadowSplits,
                         isEncoded, fog, hooks);
     }

@@ -54,7 +54,7 @@ check_pack()
 # The machine's own libraries are newer, and its driver may need that.
 prefer_libraries_of_machine()
 {
-    /sbin/ldconfig -p | awk '/x86-64/ { print $1 }' | (cd "$build/lib" && xargs rm -f --)
+    /sbin/ldconfig -p | awk '/x86-64/ { print $1 }' | (cd "$unpacked/libraries" && xargs rm -f --)
 }
 
 # The paths that the tests were compiled with.
@@ -85,7 +85,9 @@ find_driver()
         export OSGGPUANIMATION_EGL_PLATFORM=${OSGGPUANIMATION_EGL_PLATFORM:-device}
         break
     done
-    export LD_LIBRARY_PATH=$build/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
+    # Apart from the plugins, which OSG would find beside them in tests of their absence, too.
+    ln -s "$build"/lib/*.so* "$unpacked/libraries"
+    export LD_LIBRARY_PATH=$unpacked/libraries${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
     export OSG_LIBRARY_PATH=$build/lib OSGGPUANIMATION_REQUIRE_GL=1
     for folder in /usr/local/nvidia/lib{64,}; do
         [ ! -d "$folder" ] || LD_LIBRARY_PATH+=:$folder

@@ -9,7 +9,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/../setup.sh"
 
 # OSG's own plugins: pictures, scene files with the wrappers of OSG's libraries, pseudo-loaders.
 plugins=(png jpeg hdr rgb tga bmp osg ive rot trans scale deprecated_osg deprecated_osganimation deprecated_osgviewer
-    serializers_osg serializers_osganimation serializers_osgviewer serializers_osgshadow serializers_osgfx)
+    osgshadow serializers_osg serializers_osganimation serializers_osgviewer serializers_osgshadow serializers_osgfx)
 # The C library is the machine's own.
 c_library='/(ld-linux-x86-64|lib(c|m|dl|rt|pthread|resolv))[.]so'
 
@@ -36,8 +36,8 @@ copy()
 # that are not in the pack.
 find_libraries()
 {
-    find "$pack/project/build" -type f \( -perm -u+x -o -name '*.so*' \) -print0 |
-        LD_LIBRARY_PATH=$pack/project/build/lib xargs -0 ldd >"$scratch/ldd" || fail "ldd cannot read a packed file"
+    find "$pack"/{libraries,project/build} -type f \( -perm -u+x -o -name '*.so*' \) -print0 |
+        LD_LIBRARY_PATH=$pack/project/build/lib:$pack/libraries xargs -0 ldd >"$scratch/ldd" || fail "ldd cannot read a packed file"
     if grep 'not found' "$scratch/ldd" >&2; then
         fail "the libraries named above are missing"
     fi
@@ -74,15 +74,16 @@ theirs=$(dirname "$osgdb")/${ours[0]##*/}
 plugins=("${plugins[@]/#/$theirs/osgdb_}")
 copy "${plugins[@]/%/.so}" "project/build/lib/${ours[0]##*/}"
 
+mkdir "$pack/libraries"
 find_libraries
 while read -r library; do
-    cp -L "$library" "$pack/project/build/lib"
+    cp -L "$library" "$pack/libraries"
 done <"$scratch/libraries"
 find_libraries
 if grep . "$scratch/libraries" >&2; then
     fail "packed files load the libraries named above from outside of the pack"
 fi
-find "$pack/project/build" -type f -exec strip {} +
+find "$pack"/{libraries,project/build} -type f -exec strip {} +
 
 mkdir -p "$root/.gpu"
 tar -C "$pack" -c . | xz -T0 -3 >"$root/.gpu/pack.tar.xz"

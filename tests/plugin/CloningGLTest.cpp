@@ -187,7 +187,10 @@ TEST_F(CloningGLTest, theObjectCacheHandsOutCharactersOfTheirOwn)
 TEST_F(CloningGLTest, theFirstFrameOfAThousandCopiesIsAsTheNext)
 {
     const osg::ref_ptr<osg::Node> scene = load();
-    pictureOf(*scene, 0.0); // programs and buffers are there
+    osg::ref_ptr<osg::Group> few = new osg::Group;
+    for (int i = 0; i < 3; ++i)
+        few->addChild(osg::clone(scene.get(), osg::CopyOp::DEEP_COPY_NODES));
+    pictureOf(*few, 0.0); // programs, those of joined draws too, and buffers are there
     osg::ref_ptr<osg::Group> all = new osg::Group;
     const double start = cpuMilliseconds();
     for (int i = 0; i < 1000; ++i)

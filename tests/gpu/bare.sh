@@ -18,6 +18,8 @@ for folder in bin sbin lib lib64; do
     ln -s "usr/$folder" "$bare/$folder"
 done
 mknod -m 666 "$bare/dev/null" c 1 3
+mknod -m 666 "$bare/dev/zero" c 1 5
+mknod -m 666 "$bare/dev/full" c 1 7
 mknod -m 666 "$bare/dev/urandom" c 1 9
 apt-cache depends --recurse --installed --no-recommends --no-suggests --no-conflicts --no-breaks --no-replaces \
     --no-enhances "${packages[@]}" | grep '^[a-z0-9]' | sort -u >"$bare/packages"

@@ -85,7 +85,7 @@ find_driver()
         export OSGGPUANIMATION_EGL_PLATFORM=${OSGGPUANIMATION_EGL_PLATFORM:-device}
         break
     done
-    # Apart from the plugins, which OSG would find beside them in tests of their absence, too.
+    # OSG finds its plugins beside libraries; in tests of their absence it must not find the kit's.
     ln -s "$build"/lib/*.so* "$unpacked/libraries"
     export LD_LIBRARY_PATH=$unpacked/libraries${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
     export OSG_LIBRARY_PATH=$build/lib OSGGPUANIMATION_REQUIRE_GL=1

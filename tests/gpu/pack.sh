@@ -72,9 +72,8 @@ copy "$shared"/looks/{models,pictures,compare.py} shared/looks
 osgdb=$(ldd "$build/bin/osggpuanim" | awk '/libosgDB/ { print $3 }') || fail "ldd cannot read $build/bin/osggpuanim"
 theirs=$(dirname "$osgdb")/${ours[0]##*/}
 plugins=("${plugins[@]/#/$theirs/osgdb_}")
-copy "${plugins[@]/%/.so}" "project/build/lib/${ours[0]##*/}"
+copy "${plugins[@]/%/.so}" "libraries/${ours[0]##*/}"
 
-mkdir "$pack/libraries"
 find_libraries
 while read -r library; do
     cp -L "$library" "$pack/libraries"

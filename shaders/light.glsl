@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Lights a surface with OSG's lights, then applies the shadow maps of osgShadow's techniques and fog: with MATERIAL_PBR as
 // glTF's metallic-roughness material in linear light, else the base colour in display space like the fixed pipeline. In a
-// core profile without lights: a headlight. DRAW_...: see ShaderKey in looks/shading/ShaderPermutations.h. To use it
-// in another program, see lightShader() in looks/CharacterProgram.h. Included above: color.glsl, material.glsl, pbr.glsl,
-// environment.glsl.
+// core profile without lights and surroundings: a headlight. DRAW_...: see ShaderKey in
+// looks/shading/ShaderPermutations.h. To use it in another program, see lightShader() in looks/CharacterProgram.h.
+// Included above: color.glsl, material.glsl, pbr.glsl, environment.glsl.
 //
 // GIVEN_MATERIAL: the values of the material come from a host's hook or from another program.
 #pragma import_defines(MATERIAL_PBR, TONE_MAPPING)
@@ -82,7 +82,7 @@ vec3 surfaceColor(Surface surface, vec3 direct, vec3 ambient, float occlusion)
 }
 #endif
 
-#if DRAW_FIXED_PIPELINE || DRAW_LIGHTS
+#if DRAW_FIXED_PIPELINE || DRAW_LIGHTS || defined(ENVIRONMENT)
 
 // The direction to the light, and its attenuation (OpenGL 2.1, section 2.14.1).
 vec3 directionTo(int index, out float strength)

@@ -5,6 +5,7 @@
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/looks/CharacterProgram.h>
+#include <osgGpuAnimation/looks/Environment.h>
 #include <osgGpuAnimation/looks/PbrMaterial.h>
 #include <osgGpuAnimation/looks/shading/PunctualLight.h>
 #include <osgGpuAnimation/looks/shading/ViewLights.h>
@@ -312,6 +313,20 @@ TEST_F(ProfileGLTest, aHeadlightTakesThePlaceOfLightsInTheCoreProfile)
         }
         EXPECT_EQ(Picture::pixelsDifferent(*pictures[0], *pictures[1], 2.5f / 255), 0) << isPbr;
     }
+}
+
+TEST_F(ProfileGLTest, surroundingsWithoutLightsAreTheSameInTheCoreProfile)
+{
+    osg::ref_ptr<osg::Image> pictures[2];
+    for (const bool isCore : {false, true})
+    {
+        if (!changeTo(isCore ? core : stock)) return;
+        const osg::ref_ptr<Environment> studio = new Environment;
+        studio->addChild(makeGlowing(true, false));
+        pictures[isCore ? 1 : 0] = pictureOf(studio);
+        EXPECT_GT(picture().pixelsDrawn(), 150);
+    }
+    EXPECT_EQ(Picture::pixelsDifferent(*pictures[0], *pictures[1], 1.5f / 255), 0);
 }
 
 osg::Light& addLight(osg::Group& scene, int number, const osg::Vec4& position, const osg::Matrix& place)

@@ -128,6 +128,7 @@ TEST_F(FrameCallsGLTest, levelsOfAPoseSetNoStateAnew)
 {
     const osg::ref_ptr<AnimatedCharacter> deep = deepCharacter();
     const auto levels = static_cast<int>(deep->getAnimationSet().levelCount());
+    PosePipeline::of(state())->options().form = PosePipeline::Form::Fused;
     std::map<std::string, int> calls = callsOfAFrame(deep);
     EXPECT_EQ(calls["glBeginTransformFeedback"], levels);
     EXPECT_EQ(calls["glVertexAttribDivisor"], 0);

@@ -158,6 +158,7 @@ TEST_F(PosePipelineCostGLTest, palettesFitTheLargestTextureBuffer)
 TEST_F(PosePipelineCostGLTest, drawsDependOnTheSetAloneNotOnTheNumberOfCharacters)
 {
     const auto set = makeRandomSet({});
+    pipeline->options().form = PosePipeline::Form::Fused;
     for (const std::size_t count : {1, 10, 100})
     {
         PoseBatch batch(set);
@@ -169,6 +170,39 @@ TEST_F(PosePipelineCostGLTest, drawsDependOnTheSetAloneNotOnTheNumberOfCharacter
         const PosePipeline::Counters again = costOf(batch);
         EXPECT_EQ(again.feedbackDraws + again.bytesUploaded, 0u) << "unchanged";
     }
+}
+
+/// One draw per level, or three if the set has more levels and the batch few entries.
+TEST_F(PosePipelineCostGLTest, smallBatchesOfDeepSetsTakeThreeDraws)
+{
+    const auto flat = makeRandomSet({1, 20, 1}), deep = makeRandomSet({2, 20, 8});
+    const std::size_t levels = deep->levelCount(), width = 3 * 4; // whole triangles
+    ASSERT_GT(levels, 3u);
+    ASSERT_LE(flat->levelCount(), 3u);
+    const std::size_t entries = std::max(deep->paletteSize(), deep->trackCount()) * width;
+    EXPECT_GT(pipeline->options().entriesWorthADraw, 0u);
+    struct Case
+    {
+        std::shared_ptr<const AnimationSet> set;
+        std::size_t entriesWorthADraw, draws;
+    };
+    std::size_t slot = 0;
+    for (const Case& each : {Case{deep, entries / (levels - 3) + 1, 3},
+                             Case{deep, (entries - 1) / (levels - 3), levels}, Case{flat, 1000000, flat->levelCount()}})
+    {
+        pipeline->options().entriesWorthADraw = each.entriesWorthADraw;
+        PoseBatch batch(each.set);
+        for (const Instance& instance : randomInstances(*each.set, width, 1))
+            batch.add(instance.instruction);
+        const std::uint64_t before = pipeline->getCounters().feedbackDraws;
+        ASSERT_TRUE(pipeline->evaluate(state(), batch, slot++));
+        EXPECT_EQ(pipeline->getCounters().feedbackDraws - before, each.draws);
+    }
+    PoseBatch batch(deep);
+    batch.add(PoseInstruction());
+    const std::uint64_t before = pipeline->getCounters().feedbackDraws;
+    ASSERT_TRUE(pipeline->evaluateInEachForm(state(), batch, slot));
+    EXPECT_EQ(pipeline->getCounters().feedbackDraws - before, 3 + levels);
 }
 
 TEST_F(PosePipelineCostGLTest, sendsTheRootsThatMovedAlone)

@@ -134,8 +134,12 @@ EGLConfig chooseConfig(EGLDisplay display, const osg::GraphicsContext::Traits& t
     return pickConfig(display, configs, traits);
 }
 
+/// An OSG built without the fixed pipeline has no use for a compatibility profile.
 bool wantsCore(const osg::GraphicsContext::Traits& traits)
 {
+#ifndef OSG_GL_FIXED_FUNCTION_AVAILABLE
+    return true;
+#endif
     return (traits.glContextProfileMask & EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT) != 0;
 }
 

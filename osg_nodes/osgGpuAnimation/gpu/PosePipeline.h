@@ -21,17 +21,19 @@ namespace osgGpuAnimation
 ///     pipeline->evaluate(state, batch, 0);
 ///     PalettePlace place = pipeline->place(batch.set(), 0, instance);
 ///
-/// The fused form, the default, computes mix, local and world in one pass, with one draw per level of the hierarchy for
-/// all instances (see tests/benchmark/RESULTS.md). The separate form has one pass per stage. A batch with targets of
-/// constraints takes the fused form: one more draw per constraint, and one per run of entries that they turn or not.
+/// The fused form computes mix, local and world in one pass, with one draw per level of the hierarchy for all
+/// instances. The separate form has one pass per stage: fewer draws, each of which waits for the one before, and more
+/// work for an entry. So it serves small batches (see tests/benchmark/RESULTS.md). A batch with targets of constraints
+/// takes the fused form: one more draw per constraint, and one per run of entries that they turn or not.
 class PosePipeline : public osg::GraphicsObjectManager
 {
 public:
     /// The division of the stages into passes.
     enum class Form
     {
-        Fused,    ///< one pass, one draw per level
-        Separate, ///< mix, local, world: three draws; the world stage multiplies along the ancestors
+        Automatic, ///< the faster one for the levels and entries, see Options::entriesWorthADraw
+        Fused,     ///< one pass, one draw per level
+        Separate,  ///< mix, local, world: three draws; the world stage multiplies along the ancestors
     };
 
     /// The fastest measured chunk size, by a small margin (tests/benchmark/RESULTS.md).
@@ -40,7 +42,10 @@ public:
     /// The settings of a pipeline, for tests and benchmarks.
     struct Options
     {
-        Form form = Form::Fused; ///< the division of the stages into passes
+        Form form = Form::Automatic; ///< the division of the stages into passes
+        /// How many palette entries take as much longer in the separate form as one draw does in the fused form. The
+        /// initial value is that of a card or of a software renderer.
+        std::size_t entriesWorthADraw = 0;
         /// The largest number of texels of a buffer texture: at most GL_MAX_TEXTURE_BUFFER_SIZE, the initial value.
         std::size_t maxTexels = 0;
         /// The largest number of instances per draw, above 0; it limits the scratch buffer. A chunk has fewer
@@ -69,6 +74,9 @@ public:
     /// context's buffer textures or a pass does not compile: the batch then has no palette, and its characters are not
     /// drawn.
     bool evaluate(osg::State& state, const PoseBatch& batch, std::size_t slot);
+
+    /// As evaluate(), with each form that later batches of this kind may take, so that these compile nothing.
+    bool evaluateInEachForm(osg::State& state, const PoseBatch& batch, std::size_t slot);
 
     /// The largest number of poses of one sample that one chunk holds, so that one buffer texture has all of them.
     static std::size_t chunkCapacity(const AnimationSet& set, const Options& options);

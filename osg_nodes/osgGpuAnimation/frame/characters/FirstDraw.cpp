@@ -136,7 +136,7 @@ public:
         PosePipeline* pipeline = PosePipeline::of(state);
         if (!pipeline) return;
         DeletionLists::make(state);
-        if (pipeline->place(*_set, 0, 0).texture == 0 && !pipeline->evaluate(state, _batch, 0)) return;
+        if (pipeline->place(*_set, 0, 0).texture == 0 && !pipeline->evaluateInEachForm(state, _batch, 0)) return;
         const unsigned int stackSize = state.getStateSetStackSize();
         const osg::ref_ptr<osg::StateSet> view = viewState(), frame = frameState();
         for (const StatedMesh& each : _meshes)

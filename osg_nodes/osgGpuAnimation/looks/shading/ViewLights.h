@@ -81,7 +81,8 @@ protected:
     ~ViewLightsCallback() override = default;
 };
 
-/// True if the context has a core profile. OSG draws there with its matrix uniforms. On the draw side only.
+/// True if the context has a core profile, where OSG draws with its matrix uniforms, or OSG was built without the fixed
+/// pipeline. On the draw side only.
 bool isCoreProfile(const osg::State& state);
 
 /// Sets the uniforms of light.glsl for the core profile in the applied program: lights (a bit for each number), the

@@ -1,0 +1,56 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Usage: tests/ports/osg.sh [TEST...]
+# Builds Debian's OSG without the fixed pipeline (OPENGL_PROFILE=GLCORE, from its source package) and this kit with it in
+# build-osg/, and runs the GL tests there, or those whose names match the regular expressions TEST. What build-osg/ has
+# already is kept and used again. The first time takes 40 minutes on two processors. Exit status 0: the tests passed.
+set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/../setup.sh"
+
+folder=$root/build-osg
+source=$folder/source
+osg=$folder/osg
+build=$folder/kit
+# Tests of what this OSG lacks: lights, fog and texture coordinates of the fixed pipeline, and its osgFX and osgShadow.
+without=()
+
+fetch_source()
+{
+    local options=(-o "Dir::Etc::SourceList=$folder/sources.list" -o Dir::Etc::SourceParts=/dev/null
+        -o "Dir::State::Lists=$folder/lists")
+    mkdir -p "$folder/lists/partial"
+    apt-get indextargets --format 'deb-src $(REPO_URI) $(RELEASE) $(COMPONENT)' 'Created-By: Packages' 'Origin: Debian' |
+        grep ' main$' | sort -u >"$folder/sources.list"
+    apt-get "${options[@]}" update -q
+    rm -rf "$folder/fetched"
+    mkdir "$folder/fetched"
+    (cd "$folder/fetched" && apt-get "${options[@]}" source -q openscenegraph)
+    mv "$folder"/fetched/openscenegraph-* "$source"
+}
+
+# The libraries that the kit links and the plugins that its tests need.
+build_osg()
+{
+    local libraries=(OpenThreads osg osgUtil osgDB osgGA osgText osgViewer osgAnimation osgShadow osgFX)
+    local formats=(osg png jpeg rgb hdr bmp tga rot)
+    local plugins=("${formats[@]/#/osgdb_}" osgdb_serializers_osg{,animation,viewer,shadow,fx})
+    local options=(-DOPENGL_PROFILE=GLCORE -DBUILD_OSG_APPLICATIONS=OFF -DBUILD_OSG_PLUGINS_BY_DEFAULT=OFF -Wno-dev)
+    for format in "${formats[@]}"; do
+        options+=("-DBUILD_OSG_PLUGIN_${format^^}=ON")
+    done
+    cmake -S "$source" -B "$folder/osg-build" -G Ninja "${options[@]}" -DCMAKE_BUILD_TYPE=Release -DLIB_POSTFIX=
+    cmake --build "$folder/osg-build" --parallel "$(nproc)" --target "${libraries[@]}" "${plugins[@]}"
+    rm -rf "$osg"
+    mkdir "$osg"
+    cp -a "$source/include" "$folder/osg-build"/{include,lib} "$osg"
+}
+
+install_missing "${view_packages[@]}" "${test_packages[@]}" libx11-dev libxrandr-dev
+mkdir -p "$folder"
+[ -d "$source" ] || fetch_source
+[ -d "$osg/lib" ] || build_osg
+export OSG_DIR=$osg LD_LIBRARY_PATH=$osg/lib
+configure_release -DBUILD_TESTING=ON
+build_targets
+ctest --test-dir "$build" -j "$(nproc)" --output-on-failure -R "$(IFS='|' && echo "${*:-GLTest}")" \
+    ${without:+-E "$(IFS='|' && echo "${without[*]}")"}

@@ -135,6 +135,7 @@ private:
 
     static bool isActive(const osg::VertexArrayState::ArrayDispatch* array) { return array && array->active; }
 
+#ifdef GL_COLOR_ARRAY
     void compareLegacyArrays(const osg::VertexArrayState& arrays)
     {
         const auto compareArray = [&](const char* name, GLenum array, const auto& dispatch)
@@ -152,6 +153,9 @@ private:
         }
         _gl.glClientActiveTexture(GL_TEXTURE0 + active);
     }
+#else // an OSG without the fixed pipeline
+    void compareLegacyArrays(const osg::VertexArrayState&) {}
+#endif
 
     GLuint attribute(GLuint location, GLenum name) const
     {
@@ -389,7 +393,7 @@ using namespace osgGpuAnimation;
 
 // The program's own functions stand before the libraries': calls from OSG and from the kit come here first.
 #define BEFORE_THE_LIBRARYS(Return, function, parameters, ...)                                                         \
-    extern "C" Return GLAPIENTRY function parameters                                                                   \
+    extern "C" Return GL_APIENTRY function parameters                                                                  \
     {                                                                                                                  \
         enter(#function);                                                                                              \
         return next<decltype(function)>(#function)(__VA_ARGS__);                                                       \

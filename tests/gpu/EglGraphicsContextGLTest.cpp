@@ -14,6 +14,15 @@
 #include <array>
 #include <utility>
 
+#ifndef GL_RED_BITS // an OSG without the fixed pipeline
+#define GL_RED_BITS 0x0D52
+#define GL_GREEN_BITS 0x0D53
+#define GL_BLUE_BITS 0x0D54
+#define GL_ALPHA_BITS 0x0D55
+#define GL_DEPTH_BITS 0x0D56
+#define GL_STENCIL_BITS 0x0D57
+#endif
+
 namespace osgGpuAnimation
 {
 namespace

@@ -8,6 +8,7 @@
 #include <osgGpuAnimation/looks/environment/PrefilteredMap.h>
 #include <osgGpuAnimation/looks/PbrMaterial.h>
 
+#include <osg/ClipPlane>
 #include <osg/FrontFace>
 #include <osg/LightModel>
 #include <osg/MatrixTransform>

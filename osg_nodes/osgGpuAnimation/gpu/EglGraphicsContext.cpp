@@ -2,7 +2,14 @@
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
 
 #include <osg/DisplaySettings>
+#include <osg/Fog>
+#include <osg/Light>
+#include <osg/Material>
 #include <osg/Notify>
+#include <osg/TexGen>
+#include <osg/Texture1D>
+#include <osg/TextureRectangle>
+#include <osg/Transform>
 
 #define EGL_NO_X11
 #include <EGL/egl.h>

@@ -3,6 +3,7 @@
 
 #include <osg/GLExtensions>
 #include <osg/State>
+#include <osg/Texture> // the names of formats
 
 #include <cstddef>
 #include <cstdint>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/looks/environment/PrefilteredMap.h>
 
+#include <osg/ClipPlane>
+#include <osg/FrameBufferObject>
 #include <osg/GLExtensions>
 #include <osg/Notify>
 #include <osg/State>

@@ -6,6 +6,7 @@
 #include <osgGpuAnimation/looks/shading/ViewLights.h>
 #include <osgGpuAnimation/scene/traversal/CullScopes.h>
 
+#include <osg/ClipPlane>
 #include <osg/ColorMask>
 #include <osg/Fog>
 #include <osg/GLExtensions>
@@ -60,6 +61,13 @@ bool isModeOn(osg::State& state, osg::StateAttribute::GLMode mode)
 bool isTexturingOn(osg::State& state)
 {
     if (isWhiteTexture(state.getLastAppliedTextureAttribute(0, osg::StateAttribute::TEXTURE))) return false;
+#ifndef OSG_GL_FIXED_FUNCTION_AVAILABLE
+    // To such an OSG a texture has no mode.
+    const osg::State::StateSetStack& way = state.getStateSetStack();
+    return std::any_of(way.begin(), way.end(),
+                       [](const osg::StateSet* each)
+                       { return each && each->getTextureAttribute(0, osg::StateAttribute::TEXTURE); });
+#endif
     if (!state.getUseModelViewAndProjectionUniforms()) return state.getLastAppliedTextureMode(0, GL_TEXTURE_2D);
     return isSetOn(state, [](const osg::StateSet& stateSet) { return stateSet.getTextureMode(0, GL_TEXTURE_2D); });
 }
@@ -276,8 +284,8 @@ ShaderKey ShaderKey::of(osg::State& state)
     surface.hasFlatNormals = surface.isLit && isOn(state, "flatNormals");
     surface.hasSpecular = surface.isLit && isShiny(state);
     surface.isTextured = (!surface.isDepthOnly || surface.isAlphaNeeded) && isTexturingOn(state);
-    surface.hasTextureMatrix =
-        surface.isTextured && !surface.isCore && state.getLastAppliedTextureAttribute(0, osg::StateAttribute::TEXMAT) != nullptr;
+    surface.hasTextureMatrix = surface.isTextured && !surface.isCore &&
+                               state.getLastAppliedTextureAttribute(0, osg::StateAttribute::TEXMAT) != nullptr;
     for (unsigned int plane = 0; plane < 6 && !surface.isCore; ++plane)
         surface.hasClipPlanes = surface.hasClipPlanes || state.getLastAppliedMode(GL_CLIP_PLANE0 + plane);
     if (surface.isLit) readLights(state, surface);
@@ -297,14 +305,14 @@ std::string ShaderKey::defines() const
     std::string ofHooks;
     for (std::size_t place = 0; place < hooks.size(); ++place)
         if (hooks[place]) ofHooks += hookDefines[place];
-    return line("DRAW_FIXED_PIPELINE", !isCore) + line("DRAW_COLOR", !isDepthOnly) + line("DRAW_ALPHA", isAlphaNeeded) + line("DRAW_LIGHTING", isLit) +
-           line("DRAW_FLAT_NORMALS", hasFlatNormals) + line("DRAW_SPECULAR", hasSpecular) +
-           line("DRAW_TEXTURE", isTextured) + line("DRAW_TEXTURE_MATRIX", hasTextureMatrix) +
-           line("DRAW_CLIP_PLANES", hasClipPlanes) + line("DRAW_LIGHTS", lights) +
-           line("DRAW_POINT_LIGHTS", pointLights) + line("DRAW_PUNCTUAL_LIGHTS", punctualLights) +
-           line("DRAW_SHADOW_MAPS", shadowMaps) + line("DRAW_SHADOW_BIAS", hasShadowBias) +
-           line("DRAW_SHADOW_SPLITS", hasShadowSplits) + line("DRAW_ENCODED", isEncoded) +
-           line("DRAW_FOG", static_cast<unsigned int>(fog)) + ofHooks;
+    return line("DRAW_FIXED_PIPELINE", !isCore) + line("DRAW_COLOR", !isDepthOnly) + line("DRAW_ALPHA", isAlphaNeeded) +
+           line("DRAW_LIGHTING", isLit) + line("DRAW_FLAT_NORMALS", hasFlatNormals) +
+           line("DRAW_SPECULAR", hasSpecular) + line("DRAW_TEXTURE", isTextured) +
+           line("DRAW_TEXTURE_MATRIX", hasTextureMatrix) + line("DRAW_CLIP_PLANES", hasClipPlanes) +
+           line("DRAW_LIGHTS", lights) + line("DRAW_POINT_LIGHTS", pointLights) +
+           line("DRAW_PUNCTUAL_LIGHTS", punctualLights) + line("DRAW_SHADOW_MAPS", shadowMaps) +
+           line("DRAW_SHADOW_BIAS", hasShadowBias) + line("DRAW_SHADOW_SPLITS", hasShadowSplits) +
+           line("DRAW_ENCODED", isEncoded) + line("DRAW_FOG", static_cast<unsigned int>(fog)) + ofHooks;
 }
 
 bool isWhiteTexture(const osg::StateAttribute* texture)
@@ -316,6 +324,15 @@ osg::ref_ptr<osg::Texture2D> whiteTexture()
 {
     static SharedObject<osg::Texture2D> shared;
     return shared.get(makeWhiteTexture);
+}
+
+ShaderPermutations::ShaderPermutations(osg::Shader* skin) : _skin(skin)
+{
+#ifndef OSG_GL_FIXED_FUNCTION_AVAILABLE
+    // Such an OSG makes the program itself current in a compile traversal, even if it has no shaders.
+    addShader(new osg::Shader(osg::Shader::VERTEX, "#version 140\nvoid main() { gl_Position = vec4(0.0); }\n"));
+    addShader(new osg::Shader(osg::Shader::FRAGMENT, "#version 140\nvoid main() {}\n"));
+#endif
 }
 
 ShaderPermutations::ShaderPermutations(const ShaderPermutations& other, const osg::CopyOp& copyop)
@@ -390,6 +407,9 @@ void ShaderPermutations::apply(osg::State& state) const
 // A compile traversal applies no defines, and every mesh that moves has some: prepareFirstDraw() compiles its programs.
 void ShaderPermutations::compileGLObjects(osg::State& state) const
 {
+#ifndef OSG_GL_FIXED_FUNCTION_AVAILABLE
+    osg::Program::compileGLObjects(state);
+#endif
     if (_skin) return;
     ShaderKey surface;
     surface.isCore = isCoreProfile(state);

@@ -107,7 +107,7 @@ class ShaderPermutations : public osg::Program
 public:
     /// skin: skin.glsl; null: the program draws meshes that do not move. It is not in this program's own list of
     /// shaders: OSG compiles a program that has shaders.
-    explicit ShaderPermutations(osg::Shader* skin = nullptr) : _skin(skin) {}
+    explicit ShaderPermutations(osg::Shader* skin = nullptr);
     /// Shares the shader; the copy creates its own programs.
     ShaderPermutations(const ShaderPermutations& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
 

@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/nodes/studio/KeyShadow.h>
 
+#include <osg/ClipPlane>
 #include <osg/CullFace>
 #include <osg/Depth>
 #include <osg/PolygonMode>

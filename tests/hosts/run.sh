@@ -43,7 +43,7 @@ write_sumo()
     </vehicle>
 </routes>
 END
-    echo '<viewsettings> <viewport x="23" y="-12" z="2" centerX="23" centerY="-5" centerZ="0.8"/> </viewsettings>' >view.xml
+    echo '<viewsettings> <viewport x="23" y="-13" z="2" centerX="23.2" centerY="-5" centerZ="0.5"/> </viewsettings>' >view.xml
 }
 start_sumo()
 {

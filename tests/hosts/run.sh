@@ -14,8 +14,8 @@ packages_flightgear=(flightgear) # 2 GB with its data
 packages_present3D=()
 
 # What a character must at least change, in pixels: the host's own picture, and half a second later its own. SUMO's clock
-# changes some 100.
-least_shown=1500 least_moved=400
+# and indicators change up to 1,400.
+least_shown=1500 least_moved=3000
 least_part=20 # the lantern in fgviewer, which shows the character 170 pixels high
 
 fail()

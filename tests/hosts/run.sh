@@ -10,13 +10,13 @@ source "$(dirname "${BASH_SOURCE[0]}")/../setup.sh"
 
 packages_sumo=(sumo)
 packages_dart=(g++ libopenscenegraph-dev libdart-gui-osg-dev libdart-external-ikfast-dev libassimp-dev)
-packages_flightgear=(flightgear) # 2 GB with its data
+packages_flightgear=(flightgear) # 2.6 GB with its data
 packages_present3D=()
 
 # What a character must at least change, in pixels: the host's own picture, and half a second later its own. SUMO's clock
 # and indicators change up to 1,400.
 least_shown=1500 least_moved=3000
-least_part=20 # the lantern in fgviewer, which shows the character 170 pixels high
+least_part=60 # the lantern in fgviewer, which shows the character 170 pixels high; it has some 250
 
 fail()
 {
@@ -24,7 +24,7 @@ fail()
     exit 1
 }
 
-# Each host writes its files; `start HOST bare` shows them without the character, `start HOST full` with it.
+# Each host writes its files; `start_HOST bare` shows them without the character, `start_HOST full` with it.
 write_sumo()
 {
     cp "$root/scenes/Wanderer.glb" .

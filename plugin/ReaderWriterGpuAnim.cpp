@@ -10,6 +10,16 @@
 namespace osgGpuAnimation
 {
 
+/// OSG's reader of COLLADA has the texture of a material in unit 1 unless an option of its own tells otherwise;
+/// characters have theirs in unit 0.
+osg::ref_ptr<osgDB::Options> withTexturesFromUnit0(const osgDB::Options* options)
+{
+    osg::ref_ptr<osgDB::Options> changed = options ? options->cloneOptions() : new osgDB::Options;
+    if (changed->getOptionString().find("daeUsePredefinedTextureUnits") == std::string::npos)
+        changed->setOptionString(changed->getOptionString() + " daeUseSequencedTextureUnits");
+    return changed;
+}
+
 /// The pseudo-loader for osgAnimation's scenes: `nathan.osg.gpuanim` reads `nathan.osg` with the plugin of its
 /// extension and puts AnimatedCharacters in the places of its skeletons; see osganimation::convertOsgAnimation().
 class ReaderWriterGpuAnim : public PseudoLoader
@@ -22,7 +32,7 @@ public:
 protected:
     ReadResult read(const std::string& modelFile, const Options* options) const override
     {
-        ReadResult model = readModel(modelFile, options, "character");
+        ReadResult model = readModel(modelFile, withTexturesFromUnit0(options), "character");
         if (!model.validNode()) return model;
         osg::ref_ptr<osg::Node> scene = model.takeNode();
         const osganimation::Conversion converted = osganimation::convertOsgAnimation(*scene);

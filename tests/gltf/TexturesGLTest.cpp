@@ -125,6 +125,17 @@ TEST_F(TexturesCoreGLTest, theFormatFollowsFromTheColorSpace)
     }
 }
 
+// As SimGear does for all textures, unless it compresses them.
+TEST_F(TexturesGLTest, colorsStayColorsWhereAHostAsksForTheFormatOfThePicture)
+{
+    TextureFile file(encodedPicture("png", 4, 4));
+    osg::Texture2D* const texture = file.textures->texture(0, ColorSpace::Srgb);
+    ASSERT_TRUE(texture);
+    texture->setInternalFormatMode(osg::Texture::USE_IMAGE_DATA_FORMAT);
+    apply(*texture);
+    EXPECT_EQ(levelParameter(0, GL_TEXTURE_INTERNAL_FORMAT), GL_SRGB8);
+}
+
 // Blue and red in equal parts: linear light of 0.5 is 0.735 in sRGB.
 TEST_F(TexturesGLTest, mipmapsOfColorsAreMixedInLinearLight)
 {

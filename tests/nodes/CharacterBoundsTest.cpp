@@ -6,6 +6,8 @@
 #include <osgGpuAnimation/authoring/ClipBuilder.h>
 
 #include <osg/ComputeBoundsVisitor>
+#include <osg/ShapeDrawable>
+#include <osg/Switch>
 
 #include <gtest/gtest.h>
 
@@ -44,6 +46,23 @@ TEST(CharacterBoundsTest, followWhatLayersAndCrossfadesPlay)
     EXPECT_GE(character->getCurrentBounds().xMax(), 3.0f) << "shift is added to the turned square";
     EXPECT_GE(character->getBound().center().x() + character->getBound().radius(), 3.0f);
     EXPECT_GE(square->getBoundingBox().xMax(), character->getCurrentBounds().xMax());
+}
+
+// As SimGear's select does.
+TEST(CharacterBoundsTest, aGroupThatAHostPutsAboveAPartChangesNothing)
+{
+    const osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+    character->update(0.0);
+    const float radius = character->getBound().radius();
+    const osg::ref_ptr<osg::Node> part = character->getChild(0);
+    const osg::ref_ptr<osg::Group> hosts = new osg::Switch;
+    character->replaceChild(part, hosts);
+    hosts->addChild(part);
+    EXPECT_FLOAT_EQ(character->getBound().radius(), radius);
+    // What else is there counts.
+    hosts->addChild(new osg::MatrixTransform(osg::Matrix::translate(50, 0, 0)));
+    hosts->getChild(1)->asGroup()->addChild(new osg::ShapeDrawable(new osg::Sphere));
+    EXPECT_GT(character->getBound().radius(), 24.0f);
 }
 
 /// A square whose only morph target, of weight 0.25 at rest, lifts its first corner by `lift`, the others less. "rise"

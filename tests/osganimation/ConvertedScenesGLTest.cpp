@@ -20,7 +20,9 @@
 #include <osgUtil/UpdateVisitor>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <fstream>
 #include <functional>
 #include <map>
 #include <set>
@@ -342,6 +344,81 @@ TEST_F(ConvertedScenesGLTest, thePseudoLoaderConvertsScenesOfAnyReader)
     const osg::ref_ptr<osg::Node> again = osgDB::readRefNodeFile(stored);
     ASSERT_TRUE(again);
     EXPECT_TRUE(findCharacter(*again));
+}
+
+/// Counts the textures of each unit.
+class TextureUnits : public osg::NodeVisitor
+{
+public:
+    TextureUnits() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) {}
+    void apply(osg::Node& node) override
+    {
+        for (unsigned int unit = 0; node.getStateSet() && unit < units.size(); ++unit)
+            if (node.getStateSet()->getTextureAttribute(unit, osg::StateAttribute::TEXTURE)) ++units[unit];
+        traverse(node);
+    }
+
+    std::array<int, 2> units = {0, 0};
+};
+
+std::array<int, 2> textureUnits(const std::string& file, const std::string& options)
+{
+    const osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(file, new osgDB::Options(options));
+    TextureUnits visitor;
+    if (node) node->accept(visitor);
+    return visitor.units;
+}
+
+/// A triangle with the texture paint.png. (OSG's writer of COLLADA in Debian writes no file.)
+const char* const texturedTriangle = R"(<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+  <asset/>
+  <library_images><image id="paint"><init_from>paint.png</init_from></image></library_images>
+  <library_effects><effect id="effect"><profile_COMMON>
+    <newparam sid="surface"><surface type="2D"><init_from>paint</init_from></surface></newparam>
+    <newparam sid="sampler"><sampler2D><source>surface</source></sampler2D></newparam>
+    <technique sid="common"><lambert>
+      <diffuse><texture texture="sampler" texcoord="uv"/></diffuse>
+    </lambert></technique>
+  </profile_COMMON></effect></library_effects>
+  <library_materials><material id="material"><instance_effect url="#effect"/></material></library_materials>
+  <library_geometries><geometry id="triangle"><mesh>
+    <source id="corners"><float_array id="c" count="9">0 0 0 1 0 0 0 1 0</float_array>
+      <technique_common><accessor source="#c" count="3" stride="3">
+        <param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/>
+      </accessor></technique_common></source>
+    <source id="coordinates"><float_array id="t" count="6">0 0 1 0 0 1</float_array>
+      <technique_common><accessor source="#t" count="3" stride="2">
+        <param name="S" type="float"/><param name="T" type="float"/>
+      </accessor></technique_common></source>
+    <vertices id="vertices"><input semantic="POSITION" source="#corners"/></vertices>
+    <triangles count="1" material="paint">
+      <input semantic="VERTEX" source="#vertices" offset="0"/>
+      <input semantic="TEXCOORD" source="#coordinates" offset="0" set="0"/>
+      <p>0 1 2</p>
+    </triangles>
+  </mesh></geometry></library_geometries>
+  <library_visual_scenes><visual_scene id="scene"><node><instance_geometry url="#triangle">
+    <bind_material><technique_common><instance_material symbol="paint" target="#material">
+      <bind_vertex_input semantic="uv" input_semantic="TEXCOORD" input_set="0"/>
+    </instance_material></technique_common></bind_material>
+  </instance_geometry></node></visual_scene></library_visual_scenes>
+  <scene><instance_visual_scene url="#scene"/></scene>
+</COLLADA>
+)";
+
+TEST(GpuAnimPluginTest, texturesOfColladaAreInUnit0)
+{
+    usePluginsOfTheBuild();
+    const ScratchFolder folder;
+    const std::string file = folder.file("triangle.dae");
+    std::ofstream(file) << texturedTriangle;
+    osg::ref_ptr<osg::Image> image = new osg::Image;
+    image->allocateImage(2, 2, 1, GL_RGB, GL_UNSIGNED_BYTE);
+    ASSERT_TRUE(osgDB::writeImageFile(*image, folder.file("paint.png")));
+    EXPECT_EQ(textureUnits(file, ""), (std::array<int, 2>{0, 1})) << "OSG's reader alone";
+    EXPECT_EQ(textureUnits(file + ".gpuanim", ""), (std::array<int, 2>{1, 0}));
+    EXPECT_EQ(textureUnits(file + ".gpuanim", "daeUsePredefinedTextureUnits"), (std::array<int, 2>{0, 1}));
 }
 
 TEST(ExportedScenesTest, nathanComesBackFromAGlb)

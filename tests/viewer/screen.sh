@@ -18,7 +18,7 @@ end()
 trap end EXIT
 
 # The first display number that is free, told on file descriptor 3.
-Xvfb -displayfd 3 -screen 0 ${width}x${height}x24 -nocursor -nolisten tcp -fbdir "$folder" 3>"$folder/number" 2>"$folder/xvfb.log" &
+Xvfb -displayfd 3 -screen 0 ${width}x${height}x24 -nocursor -noreset -nolisten tcp -fbdir "$folder" 3>"$folder/number" 2>"$folder/xvfb.log" &
 server=$!
 for ((tenths = 0; tenths < 300; ++tenths)); do
     [ ! -s "$folder/number" ] || break

@@ -44,6 +44,18 @@ std::vector<const SkinnedGeometry*> meshesBelow(osg::Node& node)
     return meshes;
 }
 
+/// True if it shows meshes of the character where they are: a mesh, its levels of detail, a switch of a host above
+/// parts.
+bool showsMeshesAlone(const osg::Node& node)
+{
+    if (dynamic_cast<const SkinnedGeometry*>(&node)) return true;
+    const osg::Group* const group = node.asGroup();
+    if (!group || group->asTransform() || group->getNumChildren() == 0) return false;
+    for (unsigned int child = 0; child < group->getNumChildren(); ++child)
+        if (!showsMeshesAlone(*group->getChild(child))) return false;
+    return true;
+}
+
 /// Those that others wear: of levels of detail in the file the first.
 std::vector<const SkinnedGeometry*> wornMeshes(const AnimatedCharacter& garment)
 {
@@ -350,7 +362,7 @@ osg::BoundingSphere AnimatedCharacter::computeBound() const
     {
         // Meshes are asked for theirs, too: cameras that cull at once must find all bounds computed.
         const osg::BoundingSphere& bound = child->getBound();
-        if (!dynamic_cast<const SkinnedGeometry*>(child.get())) others.expandBy(bound);
+        if (!showsMeshesAlone(*child)) others.expandBy(bound);
     }
     if (others.valid()) box.expandBy(others);
     return osg::BoundingSphere(transformed(box, getMatrix()));

@@ -212,6 +212,8 @@ osg::ref_ptr<osg::Texture2D> Textures::make(const tinygltf::Texture& source, Col
         source.sampler < 0 ? tinygltf::Sampler() : elementOf(_model.samplers, source.sampler);
     osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D(picture);
     if (space != ColorSpace::Display) texture->setInternalFormat(internalFormat(*picture, space));
+    // For hosts that let each texture take the format of its picture, as SimGear does.
+    if (space == ColorSpace::Srgb) picture->setInternalTextureFormat(texture->getInternalFormat());
     texture->setName(source.name.empty() ? picture->getName() : source.name);
     // glTF and OSG both use OpenGL's numbers; the schema has checked them, and -1 says that the file gives no filter.
     texture->setWrap(osg::Texture::WRAP_S, static_cast<osg::Texture::WrapMode>(sampler.wrapS));

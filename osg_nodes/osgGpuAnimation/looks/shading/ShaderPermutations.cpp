@@ -61,15 +61,19 @@ bool isModeOn(osg::State& state, osg::StateAttribute::GLMode mode)
 bool isTexturingOn(osg::State& state)
 {
     if (isWhiteTexture(state.getLastAppliedTextureAttribute(0, osg::StateAttribute::TEXTURE))) return false;
-#ifndef OSG_GL_FIXED_FUNCTION_AVAILABLE
-    // To such an OSG a texture has no mode.
-    const osg::State::StateSetStack& way = state.getStateSetStack();
-    return std::any_of(way.begin(), way.end(),
-                       [](const osg::StateSet* each)
-                       { return each && each->getTextureAttribute(0, osg::StateAttribute::TEXTURE); });
-#endif
     if (!state.getUseModelViewAndProjectionUniforms()) return state.getLastAppliedTextureMode(0, GL_TEXTURE_2D);
-    return isSetOn(state, [](const osg::StateSet& stateSet) { return stateSet.getTextureMode(0, GL_TEXTURE_2D); });
+    return isSetOn(state,
+                   [](const osg::StateSet& stateSet)
+                   {
+                       osg::StateAttribute::GLModeValue mode = stateSet.getTextureMode(0, GL_TEXTURE_2D);
+#ifndef OSG_GL_FIXED_FUNCTION_AVAILABLE
+                       // To such an OSG a texture has no mode.
+                       if (mode == osg::StateAttribute::INHERIT &&
+                           stateSet.getTextureAttribute(0, osg::StateAttribute::TEXTURE))
+                           mode = osg::StateAttribute::ON;
+#endif
+                       return mode;
+                   });
 }
 
 bool isColorMasked(const osg::State& state)

@@ -86,6 +86,8 @@ osg::ref_ptr<osg::Group> lit(osg::Node* scene, Look look, Environment* surroundi
         group->getOrCreateStateSet()->setAttribute(ambient);
     }
     group->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::ON);
+    // An OSG without the fixed pipeline does not switch on a viewer's light.
+    if (look == Look::Sun) group->getStateSet()->setMode(GL_LIGHT0, osg::StateAttribute::ON);
     group->addChild(scene);
     return group;
 }

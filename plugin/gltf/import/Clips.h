@@ -22,6 +22,9 @@ struct Clips
 /// A clip that ClipBuilder refuses, or that exceeds the budget, is left out with a warning. Channels without a node are
 /// skipped, as the specification requires. A clip without a name is named after its number, `clip 3`.
 ///
+/// Times are mended with a warning: of keys with equal times the last one remains; a channel whose times decrease is
+/// skipped; a clip with times below 0 begins at the first of them.
+///
 /// Markers come from the animation's extras (glTF 2.0 leaves extras to applications):
 ///
 ///     "extras": { "markers": [ { "time": 0.2, "name": "left foot" }, { "time": 0.7, "name": "right foot" } ] }

@@ -11,6 +11,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <tuple>
+
 namespace osgGpuAnimation::gltf
 {
 
@@ -25,7 +28,7 @@ struct ReadClips
         const NodeTree tree = buildNodeTree(file.model, {}).value();
         const Joints joints = buildJoints(file.model, tree).value();
         MemoryBudget budget(bytes);
-        clips = readClips(file.model, joints, readMorphs(file.model), budget, report);
+        clips = readClips(file.model, joints, readMorphs(file.model), "", budget, report);
     }
 
     std::string warning() const { return messages.warnings.empty() ? "" : messages.warnings[0]; }
@@ -417,6 +420,55 @@ TEST(ClipFilesTest, nodesOfTheModelMoveWhoseNamesTheClipsHave)
     ASSERT_TRUE(alone.character) << "clips alone are a file";
     expectWarnings(alone, {});
     EXPECT_EQ(alone.character->getController().clip(), 0);
+}
+
+TEST(ClipFilesTest, aGenericNameIsReplacedByThatOfTheModelsOwnFileToo)
+{
+    const ScratchFolder folder;
+    const std::pair<const char*, const char*> cases[] = {
+        {"mixamo.com", "Dance"}, {"Take 001", "Dance"}, {"Motion", "Dance"}, {"Take 002", "Take 002"}, {"", "clip 0"}};
+    for (const auto& [name, expected] : cases)
+    {
+        ModelBuilder file = bodyModel();
+        file.slidingClip(name, 0);
+        EXPECT_EQ(clipNamesOf(load(folder.write("Dance.gltf", file.text()), {})), std::vector<std::string>{expected});
+    }
+    ModelBuilder file = bodyModel();
+    file.slidingClip("mixamo.com", 0);
+    EXPECT_EQ(clipNamesOf(imported(file)), std::vector<std::string>{"mixamo.com"}) << "a stream has no name";
+}
+
+TEST(ClipFilesTest, clipMatchSaysHowClipsOfAnotherRestPoseFitAndIsNoted)
+{
+    const ScratchFolder folder;
+    const float half = 0.70710678f;
+    ModelBuilder model = bodyModel(), clips = bodyClips({});
+    model.at(1).translation = clips.at(1).translation = {0, 1, 0};
+    clips.at(1).rotation = {0, 0, half, half};
+    clips.animation("Nod");
+    clips.channel(1, "rotation", {0, 1}, TINYGLTF_TYPE_VEC4, {0, 0, half, half, 0, 0, 0, 1});
+    folder.write("nod.gltf", clips.text());
+    const std::string path = folder.write("body.gltf", model.text());
+    const std::tuple<ClipMatch, float, std::string> cases[] = {
+        {ClipMatch::Automatic, half,
+         "(2 joints); it is the first frame of a clip, so the joints move as they do in the file: clipMatch=byName"},
+        {ClipMatch::ByName, half, ""},
+        {ClipMatch::Retarget, 0.0f, ""}};
+    for (const auto& [match, z, note] : cases)
+    {
+        ImportOptions options = withClips({"nod.gltf"});
+        options.clipMatch = match;
+        const ImportedModel loaded = load(path, options);
+        expectWarnings(loaded, {});
+        std::vector<JointTransform> tracks(loaded.set->trackCount());
+        Pose::mix(*loaded.set, instructionAt(*loaded.set, 0, 0.0), tracks);
+        EXPECT_NEAR(tracks[static_cast<std::size_t>(loaded.set->skeleton().findJoint("Head"))].rotation.z, z, 1e-6f);
+        const std::vector<std::string>& notes = loaded.messages.notes;
+        EXPECT_EQ(std::count_if(notes.begin(), notes.end(),
+                                [](const std::string& text) { return mentions(text, "clipMatch"); }),
+                  note.empty() ? 0 : 1);
+        EXPECT_TRUE(note.empty() || mentions(notes.back(), note)) << notes.back();
+    }
 }
 
 // Numbers of clips are those of the file's animations, those of other files follow; backwards stays backwards.

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/ImportedFile.h"
 #include "plugin/ModelVertices.h"
+#include "plugin/PluginFolder.h"
 #include "plugin/SharedAssets.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <osg/ComputeBoundsVisitor>
+#include <osgDB/ReadFile>
 
 #include <string>
 #include <vector>
@@ -74,6 +77,39 @@ TEST(SharedCasesTest, verticesAreWhereTheFilesSay)
                 << min.x << ' ' << min.y << ' ' << min.z << " .. " << max.x << ' ' << max.y << ' ' << max.z;
         }
     }
+}
+
+TEST(SharedCasesTest, clipsWhoseRestPoseIsTheirFirstFramePlayAsInTheirFile)
+{
+    SKIP_WITHOUT_SHARED_FILE("cases/clips_rest_is_first_frame.model.gltf");
+    const std::string path = sharedFile("cases/clips_rest_is_first_frame.model.gltf");
+    for (const ClipMatch match : {ClipMatch::Automatic, ClipMatch::ByName})
+    {
+        ImportOptions options;
+        options.clipsFiles = {"clips_rest_is_first_frame.clips.gltf"};
+        options.clipMatch = match;
+        const ImportedModel model = imported(readBytes(path), options, path);
+        expectWarnings(model, {});
+        const std::vector<glm::dvec3> vertices = ModelVertices(model, 0, 0.0).positions(model.primitives.at(0));
+        EXPECT_LT(glm::distance(vertices[4], glm::dvec3(-1, 0.5, 0)), 1e-5) << "the top row is turned";
+        EXPECT_LT(glm::distance(vertices[5], glm::dvec3(-1, 1.5, 0)), 1e-5);
+    }
+}
+
+TEST(SharedCasesTest, aCrowdShowsTheWholeVehicle)
+{
+    SKIP_WITHOUT_SHARED_FILE("cases/gltf_crowd_of_vehicle.gltf");
+    usePluginsOfTheBuild();
+    const osg::ref_ptr<osg::Node> crowd =
+        osgDB::readRefNodeFile(sharedFile("cases/gltf_crowd_of_vehicle.gltf") + ".1x1.crowd");
+    ASSERT_TRUE(crowd);
+    osg::ComputeBoundsVisitor visitor;
+    crowd->accept(visitor);
+    const osg::BoundingBox box = visitor.getBoundingBox(); // the body is 4 wide
+    EXPECT_LE(box.xMin(), -2.0f);
+    EXPECT_GE(box.xMax(), 2.0f);
+    EXPECT_LE(box.zMin(), 0.0f);
+    EXPECT_GE(box.zMax(), 2.0f) << "the rotor is above";
 }
 
 } // namespace osgGpuAnimation::gltf

@@ -95,9 +95,9 @@ void dropRepeatedKeys(Channel& channel)
 class ClipReader
 {
 public:
-    ClipReader(const tinygltf::Model& model, const Joints& joints, const Morphs& morphs, MemoryBudget& budget,
-               Report& report)
-        : _model(model), _joints(joints), _morphs(morphs), _budget(budget), _report(report),
+    ClipReader(const tinygltf::Model& model, const Joints& joints, const Morphs& morphs, const std::string& fileName,
+               MemoryBudget& budget, Report& report)
+        : _model(model), _joints(joints), _morphs(morphs), _fileName(fileName), _budget(budget), _report(report),
           _builder(joints.skeleton, morphs.weights)
     {
     }
@@ -113,6 +113,7 @@ private:
     };
 
     void start(const tinygltf::Animation& animation, std::size_t index);
+    std::string nameOf(const tinygltf::Animation& animation, std::size_t index) const;
     // These return false, with a warning, if the clip is at fault.
     bool readChannel(const tinygltf::Animation& animation, std::size_t index);
     bool addChannels();
@@ -124,6 +125,7 @@ private:
     const tinygltf::Model& _model;
     const Joints& _joints;
     const Morphs& _morphs;
+    const std::string& _fileName;
     MemoryBudget& _budget;
     Report& _report;
     ClipBuilder _builder;
@@ -228,6 +230,12 @@ bool ClipReader::addChannels()
     return any || fail("no channel is left");
 }
 
+std::string ClipReader::nameOf(const tinygltf::Animation& animation, std::size_t index) const
+{
+    if (animation.name.empty()) return "clip " + std::to_string(index);
+    return isGenericClipName(animation.name) && !_fileName.empty() ? _fileName : animation.name;
+}
+
 std::optional<Clip> ClipReader::read(std::size_t index)
 {
     const tinygltf::Animation& animation = _model.animations[index];
@@ -246,7 +254,7 @@ std::optional<Clip> ClipReader::read(std::size_t index)
         _builder = ClipBuilder(_joints.skeleton, _morphs.weights);
         return std::nullopt;
     }
-    Clip clip = _builder.build(animation.name.empty() ? "clip " + std::to_string(index) : animation.name);
+    Clip clip = _builder.build(nameOf(animation, index));
     if (!fits(_joints.skeleton, clip))
     {
         fail("it takes joints or weights " + outOfRangeText());
@@ -258,11 +266,16 @@ std::optional<Clip> ClipReader::read(std::size_t index)
 
 } // namespace
 
-Clips readClips(const tinygltf::Model& model, const Joints& joints, const Morphs& morphs, MemoryBudget& budget,
-                Report& report)
+bool isGenericClipName(const std::string& name)
+{
+    return name.find("mixamo.com") != std::string::npos || name == "Take 001" || name == "Motion";
+}
+
+Clips readClips(const tinygltf::Model& model, const Joints& joints, const Morphs& morphs, const std::string& fileName,
+                MemoryBudget& budget, Report& report)
 {
     Clips result;
-    ClipReader reader(model, joints, morphs, budget, report);
+    ClipReader reader(model, joints, morphs, fileName, budget, report);
     for (std::size_t index = 0; index < model.animations.size(); ++index)
     {
         std::optional<Clip> clip = reader.read(index);

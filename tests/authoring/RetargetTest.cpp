@@ -19,6 +19,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <numeric>
 #include <random>
 
 namespace osgGpuAnimation
@@ -410,18 +411,22 @@ TEST(RetargetTest, jointsOfKnownRigsAreMatchedByTheirRoles)
 {
     const std::vector<std::vector<std::string>> rigs{
         {"mixamorig:Hips", "mixamorig:Spine", "mixamorig:Head", "mixamorig:LeftShoulder", "mixamorig:RightArm",
-         "mixamorig:RightForeArm", "mixamorig:LeftUpLeg", "mixamorig:RightLeg", "mixamorig:LeftToeBase"},
+         "mixamorig:RightForeArm", "mixamorig:LeftUpLeg", "mixamorig:RightLeg", "mixamorig:LeftToeBase",
+         "mixamorig:LeftHand", "mixamorig:RightFoot", "mixamorig:RightShoulder", "mixamorig:LeftLeg"},
         {"Hips", "LowerBack", "Head", "LeftShoulder", "RightArm", "RightForeArm", "LeftUpLeg", "RightLeg",
-         "LeftToeBase"},
-        {"pelvis", "spine_01", "head", "clavicle_l", "upperarm_r", "lowerarm_r", "thigh_l", "calf_r", "ball_l"},
+         "LeftToeBase", "LeftHand", "RightFoot", "RightShoulder", "LeftLeg"},
+        {"pelvis", "spine_01", "head", "clavicle_l", "upperarm_r", "lowerarm_r", "thigh_l", "calf_r", "ball_l",
+         "hand_l", "foot_r", "clavicle_r", "calf_l"},
         {"hips", "spine", "head", "leftShoulder", "rightUpperArm", "rightLowerArm", "leftUpperLeg", "rightLowerLeg",
-         "leftToes"},
+         "leftToes", "leftHand", "rightFoot", "rightShoulder", "leftLowerLeg"},
         {"J_Bip_C_Hips", "J_Bip_C_Spine", "J_Bip_C_Head", "J_Bip_L_Shoulder", "J_Bip_R_UpperArm", "J_Bip_R_LowerArm",
-         "J_Bip_L_UpperLeg", "J_Bip_R_LowerLeg", "J_Bip_L_ToeBase"},
+         "J_Bip_L_UpperLeg", "J_Bip_R_LowerLeg", "J_Bip_L_ToeBase", "J_Bip_L_Hand", "J_Bip_R_Foot", "J_Bip_R_Shoulder",
+         "J_Bip_L_LowerLeg"},
         {"DEF-spine", "DEF-spine.001", "DEF-spine.006", "DEF-shoulder.L", "DEF-upper_arm.R", "DEF-forearm.R",
-         "DEF-thigh.L", "DEF-shin.R", "DEF-toe.L"},
+         "DEF-thigh.L", "DEF-shin.R", "DEF-toe.L", "DEF-hand.L", "DEF-foot.R", "DEF-shoulder.R", "DEF-shin.L"},
     };
-    const std::vector<int> all{0, 1, 2, 3, 4, 5, 6, 7, 8};
+    std::vector<int> all(rigs[0].size());
+    std::iota(all.begin(), all.end(), 0);
     for (std::size_t to = 0; to < rigs.size(); ++to)
         for (std::size_t from = 0; from < rigs.size(); ++from)
             EXPECT_EQ(byRole(rigs[to], rigs[from], {}), all) << rigs[to][0] << " of " << rigs[from][0];
@@ -431,9 +436,11 @@ TEST(RetargetTest, jointsOfKnownRigsAreMatchedByTheirRoles)
     EXPECT_EQ(byRole(rigs[2], rigs[5], {{"pelvis", ""}}), given);
     std::vector<std::string> withRoot = rigs[2];
     withRoot.push_back("DEF-spine");
-    EXPECT_EQ(byRole(withRoot, rigs[5], {}), (std::vector<int>{-1, 1, 2, 3, 4, 5, 6, 7, 8, 0}));
-    const std::vector<std::string> few(rigs[2].begin(), rigs[2].begin() + 7);
-    EXPECT_EQ(byRole(few, rigs[5], {}), std::vector<int>(7, -1)) << "of no known rig";
+    std::vector<int> taken = given;
+    taken.push_back(0);
+    EXPECT_EQ(byRole(withRoot, rigs[5], {}), taken);
+    const std::vector<std::string> few(rigs[2].begin(), rigs[2].begin() + 11);
+    EXPECT_EQ(byRole(few, rigs[5], {}), std::vector<int>(11, -1)) << "of no known rig";
 }
 
 /// How a joint above another one moves, whose rest rotation the clips' file does not share.

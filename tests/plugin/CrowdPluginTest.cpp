@@ -142,6 +142,9 @@ TEST_F(CrowdPluginTest, meshesThatDoNotMoveFollowTheirInstance)
             EXPECT_NEAR(vertices[0].y(), -5, 1e-5) << "+Z is up";
         }
         EXPECT_EQ(log->text, "");
+        const osg::ref_ptr<osg::Node> whole = read("vehicle.gltf", "wholeModel").getNode();
+        const osg::ref_ptr<AnimatedCrowd> inCode = new AnimatedCrowd(*findCharacter(*whole));
+        EXPECT_EQ(inCode->getNumChildren(), 2u);
         // A stored scene has what it was stored with.
         ASSERT_TRUE(osgDB::writeNodeFile(*read("vehicle.gltf").getNode(), folder.file("vehicle.osgt")));
         EXPECT_TRUE(readCrowd("vehicle.osgt.2x1.crowd"));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <string>
 #include <vector>
@@ -16,8 +17,8 @@ namespace osgGpuAnimation
 namespace RigNames
 {
 
-/// Fewer names of a rig do not tell that a skeleton has it.
-constexpr std::size_t minNames = 8;
+/// A skeleton with fewer names of a rig has another one: half a body must not move without the other half.
+constexpr std::size_t minNames = 12;
 
 /// One per name: the index of the other name with the same role; -1: none, or one of the skeletons is of no known rig.
 /// The rig of a skeleton is the one of which it has the most names, without namespaces and regard to case.

@@ -133,7 +133,7 @@ Result<void> Importer::makeSet(const NodeTree& tree, const Joints& joints, const
             _report.unmet(file.name + ": the model has no joints", leftOutText);
         return {};
     }
-    Clips clips = readClips(_model, joints, morphs, _budget, _report);
+    Clips clips = readClips(_model, joints, morphs, _fileName, _budget, _report);
     _result.animationOfClip = std::move(clips.animationOfClip);
     Result<std::shared_ptr<const AnimationSet>> set =
         AnimationSet::create({joints.skeleton, readSkins(_model, joints), rigidJoints(_model, tree, joints),
@@ -157,7 +157,7 @@ void Importer::addClipFiles()
     int animation = static_cast<int>(_model.animations.size());
     for (const ClipFile& file : _clipFiles)
     {
-        const auto set = withClipsOf(_result.set, file, _clipJoints, _budget, _report);
+        const auto set = withClipsOf(_result.set, file, _clipJoints, _options.clipMatch, _budget, _report);
         if (set)
             _result.set = set.value();
         else
@@ -268,6 +268,7 @@ Result<void> Importer::run()
     if (!tree) return tree.error();
     std::vector<bool> moved = nodesMovedBy(_clipFiles, _clipJoints, _model);
     addNodesOfProperties(_model, tree.value(), moved);
+    if (_options.wholeModel) addStillNodes(_model, tree.value(), moved);
     const Result<Joints> joints = buildJoints(_model, tree.value(), moved);
     if (!joints) return joints.error();
     const Morphs morphs = readMorphs(_model);

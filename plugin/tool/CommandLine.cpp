@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -167,7 +168,7 @@ std::string messageOf(const CLI::ParseError& fault, const CLI::App& app)
     return fault.what();
 }
 
-/// --clips FILE, which may come again, and --clip-joints FILE.
+/// --clips FILE, which may come again, --clip-joints FILE and --clip-match HOW.
 void addClips(CLI::App& command, ModelArguments& arguments)
 {
     command
@@ -180,6 +181,12 @@ void addClips(CLI::App& command, ModelArguments& arguments)
         .add_option("--clip-joints", arguments.clipJoints,
                     "Joints and their counterparts in those files, as JSON: {\"Hips\": \"pelvis\"}")
         ->option_text("FILE");
+    addChoice<ClipMatch>(
+        command, "--clip-match", arguments.clipMatch,
+        {{"auto", ClipMatch::Automatic}, {"byName", ClipMatch::ByName}, {"retarget", ClipMatch::Retarget}},
+        "byName: joints take the transforms of those clips as they are, for files whose rest pose is their first "
+        "frame; "
+        "retarget: their difference from the rest pose; default: auto");
 }
 
 void addCompact(CLI::App& command, double& fraction)

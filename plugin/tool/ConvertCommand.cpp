@@ -60,7 +60,7 @@ Result<void> addClips(osg::Node& scene, const std::string& file, const gltf::Imp
         gltf::warnOfUnknownJoints(joints, set->skeleton(), clipFiles, report);
         for (std::size_t i = 0; i < clipFiles.size(); ++i)
         {
-            const auto with = gltf::withClipsOf(set, clipFiles[i], joints, budget, report);
+            const auto with = gltf::withClipsOf(set, clipFiles[i], joints, options.clipMatch, budget, report);
             if (with)
             {
                 set = with.value();

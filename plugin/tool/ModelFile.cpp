@@ -123,6 +123,7 @@ Result<gltf::ImportOptions> importOptions(const ModelArguments& arguments)
 {
     gltf::ImportOptions options;
     options.allowOutsideClips = true;
+    options.clipMatch = arguments.clipMatch;
     if (arguments.compact > 0.0) options.compact = arguments.compact;
 #ifdef OSGGPUANIMATION_ASSIMP
     options.otherFormats = assimp::readAsGlb;

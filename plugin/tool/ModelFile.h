@@ -16,7 +16,8 @@ struct ModelArguments
     std::string file;               ///< of the tool's own formats, or of OSG's: `nathan.osg.gpuanim`
     std::vector<std::string> clips; ///< files whose clips are added
     std::string clipJoints;         ///< a JSON file of joint names for them, see gltf::readClipJoints(); empty: none
-    double compact = 0.0;           ///< see gltf::ImportOptions; 0: exact
+    ClipMatch clipMatch = ClipMatch::Automatic; ///< of those clips
+    double compact = 0.0;                       ///< see gltf::ImportOptions; 0: exact
 };
 
 /// The options of an import. The user named the files: they may be anywhere, relative to the current folder. Error: a

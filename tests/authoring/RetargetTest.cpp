@@ -10,6 +10,7 @@
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/authoring/retarget/JointNames.h>
 #include <osgGpuAnimation/authoring/retarget/RigMatch.h>
+#include <osgGpuAnimation/authoring/retarget/RigNames.h>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -18,6 +19,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <numeric>
 #include <random>
 
 namespace osgGpuAnimation
@@ -386,6 +388,117 @@ TEST(RetargetTest, jointsAreMatchedByNameWithoutPrefixes)
         << "the same name comes before a similar one";
     EXPECT_EQ(findCounterparts({"Hips", "pelvis"}, others, {{"Hips", ""}, {"pelvis", "Hips"}}),
               (std::vector<int>{-1, 0}));
+}
+
+TEST(RetargetTest, namesOfOtherCaseAreMatchedWhereNoneOfTheSameCaseIs)
+{
+    EXPECT_EQ(findCounterparts({"hips", "SPINE", "Head"}, {"mixamorig:Hips", "spine", "head", "Head"}, {}),
+              (std::vector<int>{0, 1, 3}));
+    EXPECT_EQ(findCounterparts({"pelvis"}, {"Hips"}, {{"pelvis", "hips"}}), (std::vector<int>{0}));
+    EXPECT_EQ(findCounterparts({"leg", "Leg"}, {"Leg"}, {}), (std::vector<int>{-1, 0}));
+}
+
+std::vector<int> byRole(const std::vector<std::string>& names, const std::vector<std::string>& others,
+                        const std::map<std::string, std::string>& given)
+{
+    std::vector<int> found = findCounterparts(names, others, given);
+    RigNames::addCounterparts(names, others, given, found);
+    return found;
+}
+
+// One row a rig, one column a role.
+TEST(RetargetTest, jointsOfKnownRigsAreMatchedByTheirRoles)
+{
+    const std::vector<std::vector<std::string>> rigs{
+        {"mixamorig:Hips", "mixamorig:Spine", "mixamorig:Head", "mixamorig:LeftShoulder", "mixamorig:RightArm",
+         "mixamorig:RightForeArm", "mixamorig:LeftUpLeg", "mixamorig:RightLeg", "mixamorig:LeftToeBase",
+         "mixamorig:LeftHand", "mixamorig:RightFoot", "mixamorig:RightShoulder", "mixamorig:LeftLeg"},
+        {"Hips", "LowerBack", "Head", "LeftShoulder", "RightArm", "RightForeArm", "LeftUpLeg", "RightLeg",
+         "LeftToeBase", "LeftHand", "RightFoot", "RightShoulder", "LeftLeg"},
+        {"pelvis", "spine_01", "head", "clavicle_l", "upperarm_r", "lowerarm_r", "thigh_l", "calf_r", "ball_l",
+         "hand_l", "foot_r", "clavicle_r", "calf_l"},
+        {"hips", "spine", "head", "leftShoulder", "rightUpperArm", "rightLowerArm", "leftUpperLeg", "rightLowerLeg",
+         "leftToes", "leftHand", "rightFoot", "rightShoulder", "leftLowerLeg"},
+        {"J_Bip_C_Hips", "J_Bip_C_Spine", "J_Bip_C_Head", "J_Bip_L_Shoulder", "J_Bip_R_UpperArm", "J_Bip_R_LowerArm",
+         "J_Bip_L_UpperLeg", "J_Bip_R_LowerLeg", "J_Bip_L_ToeBase", "J_Bip_L_Hand", "J_Bip_R_Foot", "J_Bip_R_Shoulder",
+         "J_Bip_L_LowerLeg"},
+        {"DEF-spine", "DEF-spine.001", "DEF-spine.006", "DEF-shoulder.L", "DEF-upper_arm.R", "DEF-forearm.R",
+         "DEF-thigh.L", "DEF-shin.R", "DEF-toe.L", "DEF-hand.L", "DEF-foot.R", "DEF-shoulder.R", "DEF-shin.L"},
+    };
+    std::vector<int> all(rigs[0].size());
+    std::iota(all.begin(), all.end(), 0);
+    for (std::size_t to = 0; to < rigs.size(); ++to)
+        for (std::size_t from = 0; from < rigs.size(); ++from)
+            EXPECT_EQ(byRole(rigs[to], rigs[from], {}), all) << rigs[to][0] << " of " << rigs[from][0];
+    // A given counterpart counts, and a counterpart has one joint.
+    std::vector<int> given = all;
+    given[0] = -1;
+    EXPECT_EQ(byRole(rigs[2], rigs[5], {{"pelvis", ""}}), given);
+    std::vector<std::string> withRoot = rigs[2];
+    withRoot.push_back("DEF-spine");
+    std::vector<int> taken = given;
+    taken.push_back(0);
+    EXPECT_EQ(byRole(withRoot, rigs[5], {}), taken);
+    const std::vector<std::string> few(rigs[2].begin(), rigs[2].begin() + 11);
+    EXPECT_EQ(byRole(few, rigs[5], {}), std::vector<int>(11, -1)) << "of no known rig";
+}
+
+/// How a joint above another one moves, whose rest rotation the clips' file does not share.
+struct MatchCase
+{
+    const char* name;
+    ClipMatch match;
+    float length;                       ///< of the joint in the clips; 1 in the set
+    double restAngle;                   ///< of the joint in the clips, about z in radians; 0 in the set
+    double firstAngle;                  ///< of the clip, which ends at 0
+    double expectedFirst, expectedLast; ///< angles
+    float expectedLength;
+    bool isByName;
+};
+
+const double quarter = 1.5707963267948966;
+
+const MatchCase matchCases[] = {
+    {"the first frame", ClipMatch::Automatic, 1, quarter, quarter, quarter, 0, 1, true},
+    {"a rest pose of its own", ClipMatch::Automatic, 1, quarter, 0.5, 0.5 - quarter, -quarter, 1, false},
+    {"other lengths", ClipMatch::Automatic, 2, quarter, quarter, 0, -quarter, 1, false},
+    {"a joint that does not move", ClipMatch::Automatic, 1, quarter, quarter, 0, 0, 1, false},
+    {"as asked for", ClipMatch::ByName, 2, quarter, 0.5, 0.5, 0, 2, true},
+    {"not as asked for", ClipMatch::Retarget, 1, quarter, quarter, 0, -quarter, 1, false},
+    {"the same rest pose", ClipMatch::Automatic, 1, 0, quarter, quarter, 0, 1, false},
+};
+
+TEST(RetargetTest, clipsWhoseRestPoseIsTheirFirstFrameAreTakenByName)
+{
+    const auto about = [](double angle)
+    { return glm::vec4(0, 0, static_cast<float>(std::sin(angle / 2)), static_cast<float>(std::cos(angle / 2))); };
+    for (const MatchCase& one : matchCases)
+    {
+        SCOPED_TRACE(one.name);
+        std::vector<Joint> own{{"low", -1, {}, -1}, {"high", 0, {}, -1}}, others = own;
+        own[1].rest.translation = glm::vec4(0, 1, 0, 0);
+        others[1].rest.translation = glm::vec4(0, one.length, 0, 0);
+        others[1].rest.rotation = about(one.restAngle);
+        const glm::vec4 first = about(one.firstAngle);
+        const glm::vec4 last = one.expectedLast == one.expectedFirst ? first : about(0);
+        const Channel bend{Channel::Path::Rotation,
+                           Interpolation::Linear,
+                           1,
+                           {0.0, 1.0},
+                           {first.x, first.y, first.z, first.w, last.x, last.y, last.z, last.w}};
+        RetargetOptions options;
+        options.match = one.match;
+        const RetargetedSet result = retargeted(makeSet(own, {}), makeSet(others, {{bend}}), options);
+        const auto high = static_cast<std::size_t>(result.set->skeleton().findJoint("high"));
+        const Clip& clip = result.set->clips()[0];
+        const auto angleAt = [&](std::size_t keyframe)
+        { return 2.0 * std::atan2(clip.at(keyframe, high)->rotation.z, clip.at(keyframe, high)->rotation.w); };
+        EXPECT_NEAR(angleAt(0), one.expectedFirst, 1e-6);
+        EXPECT_NEAR(angleAt(clip.keyframeCount() - 1), one.expectedLast, 1e-6);
+        EXPECT_EQ(clip.at(0, high)->translation.y, one.expectedLength);
+        EXPECT_EQ(result.byName, one.isByName ? 2u : 0u);
+        EXPECT_EQ(result.retargeted, one.isByName || one.restAngle == 0 ? 0u : 2u);
+    }
 }
 
 TEST(RetargetTest, morphsMarkersAndNamesComeAlong)

@@ -147,7 +147,9 @@ TEST(AccessorTest, columnsOfSmallMatricesArePaddedButTheLastOneNeedsNone)
                     OneAccessor one(c.type, c.componentType, count, isSparse ? Bytes(1000) : bytes);
                     if (isSparse) one.setSparse(int(count), TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, {0, 1}, bytes);
                     MemoryBudget budget(1000);
-                    EXPECT_EQ(validateAccessors(one.model, 0, budget).has_value(), missing == 1)
+                    Messages messages;
+                    Report report(messages);
+                    EXPECT_EQ(validateAccessors(one.model, 0, budget, report).has_value(), missing == 1)
                         << c.name << ' ' << count << ' ' << isSparse;
                 }
     const OneAccessor two(TINYGLTF_TYPE_MAT2, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, 2,

@@ -11,6 +11,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <tuple>
+
 namespace osgGpuAnimation::gltf
 {
 
@@ -25,7 +28,7 @@ struct ReadClips
         const NodeTree tree = buildNodeTree(file.model, {}).value();
         const Joints joints = buildJoints(file.model, tree).value();
         MemoryBudget budget(bytes);
-        clips = readClips(file.model, joints, readMorphs(file.model), budget, report);
+        clips = readClips(file.model, joints, readMorphs(file.model), "", budget, report);
     }
 
     std::string warning() const { return messages.warnings.empty() ? "" : messages.warnings[0]; }
@@ -60,7 +63,6 @@ struct Fault
 
 const Fault faults[] = {
     {"channel without node", -1, "translation", {0, 1}, {0, 0, 0, 1, 0, 0}, ""},
-    {"times that fall", 0, "scale", {1, 0}, {0, 0, 0, 1, 1, 1}, "animations[1] \"bad\".channels[1]"},
     {"values missing", 0, "scale", {0, 1}, {0, 0, 0}, "animations[1] \"bad\".channels[1]"},
     {"rotation of length 0", 0, "rotation", {0, 1}, {0, 0, 0, 0, 0, 0, 0, 1}, "animations[1] \"bad\".channels[1]"},
 };
@@ -101,6 +103,136 @@ TEST(ClipsTest, oneFaultCostsAtMostOneClip)
         EXPECT_EQ(read.clips.clips.back().keyframeCount(), 2u); // nothing of the bad clip remains
         ASSERT_EQ(read.messages.warnings.size(), *fault.warning ? 1u : 0u) << read.warning();
         EXPECT_TRUE(mentions(read.warning(), fault.warning)) << read.warning();
+    }
+}
+
+namespace
+{
+
+/// A channel with faulty times beside one of a second that is valid.
+struct TimesCase
+{
+    const char* name;
+    std::vector<float> times;
+    std::vector<float> values; ///< x of the scale; y and z are 1
+    const char* interpolation;
+    const char* warning;
+    double duration;
+    std::vector<std::pair<double, float>> expected; ///< times of the clip, x of the scale; empty: the channel is lost
+};
+
+const TimesCase timesCases[] = {
+    {"doubled",
+     {0, 0.5f, 0.5f, 1},
+     {1, 2, 4, 4},
+     "LINEAR",
+     "found 0.5 twice; the last",
+     1.0,
+     {{0, 1}, {0.25, 2.5f}, {0.5, 4}, {1, 4}}},
+    {"thrice", {0, 1, 1, 1}, {1, 2, 3, 4}, "STEP", "found 1 twice; the last", 1.0, {{0, 1}, {0.9, 1}, {1, 4}}},
+    {"all alike", {1, 1}, {2, 3}, "LINEAR", "found 1 twice; the last", 1.0, {{0, 3}, {1, 3}}},
+    {"a spline's",
+     {0, 1, 1},
+     {0, 1, 0, 0, 7, 0, 0, 2, 0},
+     "CUBICSPLINE",
+     "found 1 twice; the last",
+     1.0,
+     {{0, 1}, {0.5, 1.5f}, {1, 2}}},
+    {"decreasing", {0, 1, 0.5f}, {1, 2, 3}, "LINEAR", "found 0.5 after 1; this channel", 1.0, {}},
+    {"decreasing after equal ones",
+     {0, 0, 1, 0.5f},
+     {1, 2, 3, 4},
+     "LINEAR",
+     "found 0.5 after 1; this channel",
+     1.0,
+     {}},
+    {"negative",
+     {-1, 1},
+     {1, 3},
+     "LINEAR",
+     "expected times from 0 on, found -1; the clip begins there",
+     2.0,
+     {{0, 1}, {1, 2}, {2, 3}}},
+    {"negative alone", {-2}, {3}, "LINEAR", "found -2; the clip begins there", 3.0, {{0, 3}, {3, 3}}},
+};
+
+} // namespace
+
+TEST(ClipsTest, faultyTimesAreMendedOrCostTheirChannel)
+{
+    for (const TimesCase& one : timesCases)
+    {
+        SCOPED_TRACE(one.name);
+        ModelBuilder file = slidingArm();
+        std::vector<float> values;
+        for (const float x : one.values)
+            values.insert(values.end(), {x, 1, 1});
+        file.channel(0, "scale", one.times, TINYGLTF_TYPE_VEC3, values, one.interpolation);
+        const ImportedModel model = imported(file);
+        expectWarnings(model, {one.warning});
+        ASSERT_EQ(model.set->clips().size(), 1u);
+        EXPECT_DOUBLE_EQ(model.set->clips()[0].duration(), one.duration);
+        std::vector<JointTransform> tracks(model.set->trackCount());
+        for (const auto& [time, scale] : one.expected)
+        {
+            Pose::mix(*model.set, instructionAt(*model.set, 0, time), tracks);
+            EXPECT_NEAR(tracks[0].scale.x, scale, 1e-6f) << time;
+        }
+        Pose::mix(*model.set, instructionAt(*model.set, 0, one.duration), tracks);
+        EXPECT_NEAR(tracks[0].translation.x, 1.0f, 1e-6f) << "the other channel plays";
+        EXPECT_TRUE(!one.expected.empty() || tracks[0].scale.x == 1.0f);
+    }
+}
+
+TEST(ClipsTest, aFaultInTimesIsSaidOnceForEachAccessor)
+{
+    ModelBuilder file;
+    file.node("arm");
+    for (const char* name : {"doubled", "decreasing", "unharmed"})
+    {
+        file.animation(name);
+        const float last = file.model.animations.size() == 2 ? 0.5f : 1.0f;
+        file.channel(0, "translation", {0, 1, last}, TINYGLTF_TYPE_VEC3, {0, 0, 0, 1, 0, 0, 1, 0, 0});
+        file.channel(0, "scale", {0, 1, last}, TINYGLTF_TYPE_VEC3, {1, 1, 1, 1, 1, 1, 1, 1, 1});
+        auto& samplers = file.model.animations.back().samplers;
+        samplers[1].input = samplers[0].input;
+    }
+    file.model.animations[2].channels.clear(); // no channel uses those samplers
+    file.slide(0);
+    const ImportedModel model = imported(file);
+    EXPECT_EQ(model.animationOfClip, (std::vector<int>{0, 2}));
+    const std::string expected = ": expected times that increase, found ";
+    expectWarnings(model, {"animations[0] \"doubled\".channels[0]: accessors[0]" + expected + "1 twice",
+                           "animations[1] \"decreasing\".channels[0]: accessors[4]" + expected + "0.5 after 1",
+                           "animations[1] \"decreasing\": no channel is left; clip skipped"});
+}
+
+TEST(ClipsTest, aClipThatBeginsBeforeZeroKeepsItsChannelsInStepAndItsMarkers)
+{
+    ModelBuilder file;
+    file.animation("early");
+    file.channel(file.node("arm"), "translation", {-0.5f, 0.5f}, TINYGLTF_TYPE_VEC3, {0, 0, 0, 1, 0, 0});
+    file.channel(file.node("leg"), "translation", {0, 0.5f}, TINYGLTF_TYPE_VEC3, {0, 0, 0, 1, 0, 0});
+    nlohmann::json document = nlohmann::json::parse(file.text());
+    document["animations"][0]["extras"]["markers"] = {{{"time", 0.25}, {"name", "step"}}};
+    const ImportedModel model = imported(document.dump());
+    expectWarnings(model, {"animations[0] \"early\": expected times from 0 on, found -0.5"});
+    std::vector<JointTransform> tracks(model.set->trackCount());
+    Pose::mix(*model.set, instructionAt(*model.set, 0, 0.75), tracks);
+    EXPECT_NEAR(tracks[0].translation.x, 0.75f, 1e-6f);
+    EXPECT_NEAR(tracks[1].translation.x, 0.5f, 1e-6f);
+    EXPECT_EQ(markersOf(model).at(0).time, 0.75);
+}
+
+TEST(ClipsTest, anEmptyAnimationIsLeftOut)
+{
+    for (const char* empty : {R"({"channels":[],"samplers":[]})", R"({})", R"({"channels":[]})"})
+    {
+        nlohmann::json document = nlohmann::json::parse(slidingArm().text());
+        document["animations"].push_back(nlohmann::json::parse(empty));
+        const ImportedModel model = imported(document.dump());
+        EXPECT_EQ(model.set->clips().size(), 1u) << empty;
+        expectWarnings(model, {"animations[1].channels: expected", "animations[1].samplers: expected"});
     }
 }
 
@@ -290,12 +422,61 @@ TEST(ClipFilesTest, nodesOfTheModelMoveWhoseNamesTheClipsHave)
     EXPECT_EQ(alone.character->getController().clip(), 0);
 }
 
+TEST(ClipFilesTest, aGenericNameIsReplacedByThatOfTheModelsOwnFileToo)
+{
+    const ScratchFolder folder;
+    const std::pair<const char*, const char*> cases[] = {
+        {"mixamo.com", "Dance"}, {"Take 001", "Dance"}, {"Motion", "Dance"}, {"Take 002", "Take 002"}, {"", "clip 0"}};
+    for (const auto& [name, expected] : cases)
+    {
+        ModelBuilder file = bodyModel();
+        file.slidingClip(name, 0);
+        EXPECT_EQ(clipNamesOf(load(folder.write("Dance.gltf", file.text()), {})), std::vector<std::string>{expected});
+    }
+    ModelBuilder file = bodyModel();
+    file.slidingClip("mixamo.com", 0);
+    EXPECT_EQ(clipNamesOf(imported(file)), std::vector<std::string>{"mixamo.com"}) << "a stream has no name";
+}
+
+TEST(ClipFilesTest, clipMatchSaysHowClipsOfAnotherRestPoseFitAndIsNoted)
+{
+    const ScratchFolder folder;
+    const float half = 0.70710678f;
+    ModelBuilder model = bodyModel(), clips = bodyClips({});
+    model.at(1).translation = clips.at(1).translation = {0, 1, 0};
+    clips.at(1).rotation = {0, 0, half, half};
+    clips.animation("Nod");
+    clips.channel(1, "rotation", {0, 1}, TINYGLTF_TYPE_VEC4, {0, 0, half, half, 0, 0, 0, 1});
+    folder.write("nod.gltf", clips.text());
+    const std::string path = folder.write("body.gltf", model.text());
+    const std::tuple<ClipMatch, float, std::string> cases[] = {
+        {ClipMatch::Automatic, half,
+         "(2 joints); it is the first frame of a clip, so the joints move as they do in the file: clipMatch=byName"},
+        {ClipMatch::ByName, half, ""},
+        {ClipMatch::Retarget, 0.0f, ""}};
+    for (const auto& [match, z, note] : cases)
+    {
+        ImportOptions options = withClips({"nod.gltf"});
+        options.clipMatch = match;
+        const ImportedModel loaded = load(path, options);
+        expectWarnings(loaded, {});
+        std::vector<JointTransform> tracks(loaded.set->trackCount());
+        Pose::mix(*loaded.set, instructionAt(*loaded.set, 0, 0.0), tracks);
+        EXPECT_NEAR(tracks[static_cast<std::size_t>(loaded.set->skeleton().findJoint("Head"))].rotation.z, z, 1e-6f);
+        const std::vector<std::string>& notes = loaded.messages.notes;
+        EXPECT_EQ(std::count_if(notes.begin(), notes.end(),
+                                [](const std::string& text) { return mentions(text, "clipMatch"); }),
+                  note.empty() ? 0 : 1);
+        EXPECT_TRUE(note.empty() || mentions(notes.back(), note)) << notes.back();
+    }
+}
+
 // Numbers of clips are those of the file's animations, those of other files follow; backwards stays backwards.
 TEST(ClipFilesTest, clipsAreChosenByTheFilesNumber)
 {
     ModelBuilder file = bodyModel();
     file.animation("faulty");
-    file.channel(0, "translation", {-1, 1}, TINYGLTF_TYPE_VEC3, {0, 0, 0, 1, 0, 0});
+    file.channel(0, "translation", {1, 0}, TINYGLTF_TYPE_VEC3, {0, 0, 0, 1, 0, 0});
     file.slidingClip("one", 0);
     file.slidingClip("two", 0);
     const ScratchFolder folder;

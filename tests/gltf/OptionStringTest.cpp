@@ -17,11 +17,12 @@ TEST(OptionStringTest, readsAllOptions)
         parseOptions("  clip=Walk scene=2  noRotation allowOutsideFiles maxJsonDepth=5 maxJsonBytes=4 maxNodeDepth=6 "
                      "maxElements=7 maxDocumentBytes=8 maxDecodedBytes=8000000000 camera=Top noLights noCameras "
                      "variant=1 clips=Run.glb clips=\"Walk fast.glb\" clipJoints=names.json speed=-1.5 start=0.25 "
-                     "loop=pingpong fade=0 noKeys pixelError=0.5 compact=1e-4")
+                     "loop=pingpong fade=0 noKeys pixelError=0.5 compact=1e-4 clipMatch=byName wholeModel")
             .value();
     EXPECT_EQ(options.clip, "Walk");
     EXPECT_EQ(options.clipsFiles, (std::vector<std::string>{"Run.glb", "Walk fast.glb"}));
     EXPECT_EQ(options.clipJoints, "names.json");
+    EXPECT_EQ(options.clipMatch, ClipMatch::ByName);
     EXPECT_EQ(options.scene, 2);
     EXPECT_EQ(options.camera, "Top");
     EXPECT_EQ(options.variant, "1");
@@ -40,17 +41,20 @@ TEST(OptionStringTest, readsAllOptions)
     // Words are apart: other readers' words are passed over.
     const ImportOptions none = parseOptions("dds_flip OutputTextureFiles = \"\" noRotationX").value();
     EXPECT_FALSE(none.clip || none.scene || none.camera || none.variant || none.compact || none.start);
+    EXPECT_EQ(none.clipMatch, ClipMatch::Automatic);
     EXPECT_EQ(none.speed, 1.0);
     EXPECT_EQ(none.loopMode, LoopMode::Loop);
     EXPECT_EQ(none.pixelError, 0.0);
     for (const bool ImportOptions::*flag :
          {&ImportOptions::noRotation, &ImportOptions::allowOutsideFiles, &ImportOptions::noLights,
-          &ImportOptions::noCameras, &ImportOptions::noKeys})
+          &ImportOptions::noCameras, &ImportOptions::noKeys, &ImportOptions::wholeModel})
     {
         EXPECT_TRUE(options.*flag);
         EXPECT_FALSE(none.*flag);
     }
     EXPECT_EQ(parseOptions("loop=once").value().loopMode, LoopMode::Once);
+    EXPECT_EQ(parseOptions("clipMatch=retarget").value().clipMatch, ClipMatch::Retarget);
+    EXPECT_EQ(parseOptions("clipMatch=auto").value().clipMatch, ClipMatch::Automatic);
     EXPECT_EQ(parseOptions("loop=loop").value().loopMode, LoopMode::Loop);
     EXPECT_EQ(parseOptions("compact=1").value().compact, 1.0);
     EXPECT_TRUE(parseOptions("start=0"));
@@ -102,6 +106,7 @@ TEST(OptionStringTest, quotationMarksKeepSpaces)
 TEST(OptionStringTest, errorsSayWhatIsWanted)
 {
     const std::pair<const char*, const char*> cases[] = {
+        {"clipMatch=name", "option clipMatch: \"name\" is not auto, byName or retarget"},
         {"loop=twice", "option loop: \"twice\" is not once, loop or pingpong"},
         {"speed=fast", "option speed: \"fast\" is not a number"},
         {"pixelError=-1", "option pixelError: \"-1\" is not a number of pixels from 0 to 1000000"},

@@ -115,6 +115,46 @@ TEST_F(CrowdPluginTest, theSpacingIsOfTheLargerHorizontalSide)
     }
 }
 
+// A vehicle has a body that stays with its root, below it or beside the parts that move.
+TEST_F(CrowdPluginTest, meshesThatDoNotMoveFollowTheirInstance)
+{
+    for (const bool isBelow : {true, false})
+    {
+        ModelBuilder vehicle;
+        const int mesh = vehicle.triangle(), root = vehicle.node("vehicle");
+        const int body = vehicle.node("body", isBelow ? root : -1, mesh);
+        vehicle.at(body).translation = {0, 0, 5};
+        vehicle.at(body).scale = {4, 1, 1};
+        vehicle.slidingClip("spin", vehicle.node("rotor", isBelow ? root : -1, mesh));
+        folder.write("vehicle.gltf", vehicle.text());
+        const osg::ref_ptr<AnimatedCrowd> crowd = readCrowd("vehicle.gltf.2x1.crowd", "spacing=20");
+        ASSERT_TRUE(crowd);
+        ASSERT_EQ(crowd->getNumChildren(), 2u);
+        for (unsigned int child = 0; child < 2; ++child)
+        {
+            const auto* part = dynamic_cast<const SkinnedGeometry*>(crowd->getChild(child));
+            ASSERT_TRUE(part);
+            if (part->getName() != "body") continue;
+            const osg::ref_ptr<osg::Geometry> posed =
+                crowd->getPosedMesh(CrowdDetail::instances(*crowd).handleOf(1), *part);
+            const auto& vertices = dynamic_cast<const osg::Vec3Array&>(*posed->getVertexArray());
+            EXPECT_LT((osg::Vec3d(vertices[1] - vertices[0]) - osg::Vec3d(4, 0, 0)).length(), 1e-5);
+            EXPECT_NEAR(vertices[0].y(), -5, 1e-5) << "+Z is up";
+        }
+        EXPECT_EQ(log->text, "");
+        const osg::ref_ptr<osg::Node> whole = read("vehicle.gltf", "wholeModel").getNode();
+        const osg::ref_ptr<AnimatedCrowd> inCode = new AnimatedCrowd(*findCharacter(*whole));
+        EXPECT_EQ(inCode->getNumChildren(), 2u);
+        // A stored scene has what it was stored with.
+        ASSERT_TRUE(osgDB::writeNodeFile(*read("vehicle.gltf").getNode(), folder.file("vehicle.osgt")));
+        EXPECT_TRUE(readCrowd("vehicle.osgt.2x1.crowd"));
+        EXPECT_NE(log->text.find("\"vehicle\": meshes that are no part of it are left out"), std::string::npos)
+            << log->text;
+        log->text.clear();
+    }
+    EXPECT_FALSE(findCharacter(*read("still.gltf", "wholeModel").getNode())) << "nothing moves";
+}
+
 TEST_F(CrowdPluginTest, theSeedFixesClipsAndTimes)
 {
     const auto first = playedBy(*readCrowd("arm.gltf.5x5.crowd"));
@@ -167,7 +207,7 @@ TEST_F(CrowdPluginTest, handsOtherWordsToTheModelsReaderAsTheyAre)
     osgDB::Registry::instance()->addReaderWriter(listener);
     read("arm.listened.2x2.crowd", "dds_flip seed=2 clip=Run \"clips=a b\" \"name=with space\" noRotation");
     osgDB::Registry::instance()->removeReaderWriter(listener);
-    EXPECT_EQ(listener->heard, "dds_flip \"name=with space\" noRotation");
+    EXPECT_EQ(listener->heard, "dds_flip \"name=with space\" noRotation wholeModel") << "and one of the crowd's";
 }
 
 TEST_F(CrowdPluginTest, saysWhichOptionsItTakesForMisspelt)

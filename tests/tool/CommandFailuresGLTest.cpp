@@ -72,6 +72,7 @@ const Failure failures[] = {
     {"inspect flag.gltf --clips cut.gltf", "flag.gltf", "cut.gltf"},
     {"inspect flag.gltf --clip-joints missing.json", "missing.json", "no such file"},
     {"inspect flag.gltf --clips other.gltf --clip-joints cut.gltf", "flag.gltf", "clipJoints"},
+    {"inspect flag.gltf --clip-match name", "", "'name' is not one of auto|byName|retarget"},
 
     {"pose flag.gltf", "", "--time"},
     {"pose flag.gltf --time soon", "", "'soon' is not a number"},

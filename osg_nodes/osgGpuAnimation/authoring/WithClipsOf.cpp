@@ -92,8 +92,8 @@ std::vector<std::string> leftOut(const AnimationSet& other, const RigMatch& matc
 Result<RetargetedSet> withClipsOf(const AnimationSet& set, const AnimationSet& other, const RetargetOptions& options)
 {
     if (other.clips().empty()) return Error{"the other set has no clips"};
-    const Result<ClipRetargeter> retargeter =
-        ClipRetargeter::create({other.skeleton(), other.morphs()}, {set.skeleton(), set.morphs()}, options);
+    const Result<ClipRetargeter> retargeter = ClipRetargeter::create({other.skeleton(), other.morphs(), &other.clips()},
+                                                                     {set.skeleton(), set.morphs()}, options);
     if (!retargeter) return retargeter.error();
     FreeNames names(set.clips());
     std::vector<Clip> clips = set.clips();
@@ -106,7 +106,13 @@ Result<RetargetedSet> withClipsOf(const AnimationSet& set, const AnimationSet& o
     Result<std::shared_ptr<const AnimationSet>> made = set.withClips(std::move(clips));
     if (!made) return made.error();
     const RigMatch& match = retargeter.value().match();
-    return RetargetedSet{made.value(), atRest(set, match), leftOut(other, match)};
+    RetargetedSet result{made.value(), atRest(set, match), leftOut(other, match)};
+    for (const JointMatch& joint : match.joints())
+    {
+        result.byName += joint.isByName;
+        result.retargeted += !joint.isByName && !joint.isSameRig;
+    }
+    return result;
 }
 
 } // namespace osgGpuAnimation

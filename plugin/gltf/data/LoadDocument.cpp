@@ -129,10 +129,10 @@ Result<tinygltf::Model> load(const std::string& bytes, const std::string& fileNa
     MemoryBudget budget(options.maxDecodedBytes);
     error = loadBuffers(document["buffers"], container.value().binary, folder, budget, report, model);
     if (!error) error = decompressMeshopt(document["bufferViews"], budget, model);
-    if (!error) error = validateAccessors(model, 0, budget);
+    if (!error) error = validateAccessors(model, 0, budget, report);
     const std::size_t known = model.accessors.size();
     if (!error) error = decompressDraco(document["meshes"], budget, model);
-    if (!error) error = validateAccessors(model, known, budget);
+    if (!error) error = validateAccessors(model, known, budget, report);
     if (!error) error = validateNodes(model, options.maxNodeDepth, report);
     if (!error) validateLods(model, options.maxNodeDepth, report);
     if (!error) error = validateMeshes(model, budget, report);

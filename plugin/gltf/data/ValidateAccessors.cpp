@@ -3,11 +3,14 @@
 #include "gltf/file/Elements.h"
 
 #include "gltf/data/Accessor.h"
+#include "gltf/document/AttributeSemantic.h"
 #include "gltf/file/Report.h"
 
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <string>
+#include <utility>
 
 namespace osgGpuAnimation::gltf
 {
@@ -113,7 +116,9 @@ std::optional<Error> validateSparseIndices(const Model& model, const Run& run, s
     return std::nullopt;
 }
 
-std::optional<Error> validateSparse(const Model& model, const tinygltf::Accessor& accessor, const std::string& name)
+/// outNonFinite: set if a number is NaN or infinite.
+std::optional<Error> validateSparse(const Model& model, const tinygltf::Accessor& accessor, const std::string& name,
+                                    std::optional<Error>& outNonFinite)
 {
     const auto& sparse = accessor.sparse;
     const std::size_t count = static_cast<std::size_t>(sparse.count);
@@ -136,11 +141,13 @@ std::optional<Error> validateSparse(const Model& model, const tinygltf::Accessor
     if (!error) error = validateRun(model, values, name + ".values");
     if (!error) error = validateSparseIndices(model, indices, accessor.count, name + ".indices");
     if (!error && accessor.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT)
-        error = validateFloats(model, values, name + ".values");
+        outNonFinite = validateFloats(model, values, name + ".values");
     return error;
 }
 
-std::optional<Error> validateBase(const Model& model, const tinygltf::Accessor& accessor, const std::string& name)
+/// outNonFinite: set if a number is NaN or infinite.
+std::optional<Error> validateBase(const Model& model, const tinygltf::Accessor& accessor, const std::string& name,
+                                  std::optional<Error>& outNonFinite)
 {
     const std::size_t byteStride = elementOf(model.bufferViews, accessor.bufferView).byteStride;
     const Run run = {accessor.bufferView,
@@ -150,8 +157,65 @@ std::optional<Error> validateBase(const Model& model, const tinygltf::Accessor& 
                      byteStride != 0 ? byteStride : elementBytes(accessor),
                      componentBytes(accessor.componentType)};
     std::optional<Error> error = validateRun(model, run, name);
-    if (!error && accessor.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT) error = validateFloats(model, run, name);
+    if (!error && accessor.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT)
+        outNonFinite = validateFloats(model, run, name);
     return error;
+}
+
+bool isSurface(const std::string& attribute)
+{
+    using Kind = AttributeSemantic::Kind;
+    const Kind kind = AttributeSemantic::parse(attribute)->kind;
+    return kind == Kind::Normal || kind == Kind::Tangent || kind == Kind::Color || kind == Kind::TexCoord;
+}
+
+/// Accessors with numbers that are not finite.
+struct NonFinite
+{
+    Error fault;
+    bool isLeftOut = false; ///< by a primitive that is drawn without it
+};
+using NonFiniteAccessors = std::map<int, NonFinite>;
+
+/// Leaves out the normals, tangents, colours and texture coordinates that are not finite. Returns the fault of another
+/// attribute.
+std::optional<Error> leaveOutNonFinite(std::map<std::string, int>& attributes, NonFiniteAccessors& accessors,
+                                       const PrimitiveName& name, int target, Report& report)
+{
+    for (auto attribute = attributes.begin(); attribute != attributes.end();)
+    {
+        const auto current = attribute++;
+        const auto found = accessors.find(current->second);
+        if (found == accessors.end()) continue;
+        if (!isSurface(current->first)) return found->second.fault;
+        found->second.isLeftOut = true;
+        report.warn(name.attributes(target) + '.' + current->first + ": " + found->second.fault.message + "; left out");
+        attributes.erase(current);
+    }
+    return std::nullopt;
+}
+
+/// The same for all primitives. Returns a fault also if no primitive has the accessor. What else refers to an accessor
+/// that was left out reads zeros.
+std::optional<Error> leaveOutNonFinite(Model& model, NonFiniteAccessors accessors, Report& report)
+{
+    if (accessors.empty()) return std::nullopt;
+    for (std::size_t m = 0; m < model.meshes.size(); ++m)
+        for (std::size_t p = 0; p < model.meshes[m].primitives.size(); ++p)
+        {
+            tinygltf::Primitive& primitive = model.meshes[m].primitives[p];
+            std::optional<Error> error = leaveOutNonFinite(primitive.attributes, accessors, {m, p}, -1, report);
+            for (std::size_t t = 0; t < primitive.targets.size() && !error; ++t)
+                error = leaveOutNonFinite(primitive.targets[t], accessors, {m, p}, static_cast<int>(t), report);
+            if (error) return error;
+        }
+    for (const auto& [index, accessor] : accessors)
+    {
+        if (!accessor.isLeftOut) return accessor.fault;
+        elementOf(model.accessors, index).bufferView = -1;
+        elementOf(model.accessors, index).sparse.isSparse = false;
+    }
+    return std::nullopt;
 }
 
 /// The limit for accessors without data, so that a tiny file does not decode into gigabytes of zeros: 64 MiB, plus the
@@ -166,17 +230,18 @@ std::size_t maxImpliedBytes(const Model& model)
 
 } // namespace
 
-std::optional<Error> validateAccessors(const Model& model, std::size_t first, MemoryBudget& budget)
+std::optional<Error> validateAccessors(Model& model, std::size_t first, MemoryBudget& budget, Report& report)
 {
     if (std::optional<Error> error = validateBufferViews(model)) return error;
     MemoryBudget implied(maxImpliedBytes(model));
+    NonFiniteAccessors nonFiniteAccessors;
     for (std::size_t i = first; i < model.accessors.size(); ++i)
     {
         const tinygltf::Accessor& accessor = model.accessors[i];
         const std::size_t bytes = accessor.count * elementBytes(accessor);
-        std::optional<Error> error;
+        std::optional<Error> error, nonFinite, nonFiniteSparse;
         if (accessor.bufferView >= 0)
-            error = validateBase(model, accessor, elementName("accessors", i));
+            error = validateBase(model, accessor, elementName("accessors", i), nonFinite);
         else if (!implied.take(bytes))
             error = fault(elementName("accessors", i) + ".count",
                           "at most " + std::to_string(implied.limit()) + " bytes of zeros without data in all",
@@ -184,10 +249,12 @@ std::optional<Error> validateAccessors(const Model& model, std::size_t first, Me
         if (!error && !budget.take(bytes))
             error = fault(elementName("accessors", i) + ".count", budget.limitText(), std::to_string(bytes));
         if (!error && accessor.sparse.isSparse)
-            error = validateSparse(model, accessor, elementName("accessors", i) + ".sparse");
+            error = validateSparse(model, accessor, elementName("accessors", i) + ".sparse", nonFiniteSparse);
         if (error) return error;
+        if (!nonFinite) nonFinite = nonFiniteSparse;
+        if (nonFinite) nonFiniteAccessors.try_emplace(static_cast<int>(i), NonFinite{*nonFinite});
     }
-    return std::nullopt;
+    return leaveOutNonFinite(model, std::move(nonFiniteAccessors), report);
 }
 
 } // namespace osgGpuAnimation::gltf

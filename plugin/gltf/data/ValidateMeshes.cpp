@@ -174,8 +174,10 @@ std::optional<Error> validateNodeWeights(const Model& model)
 
 using Model = tinygltf::Model;
 
-// Rounding four weights to bytes costs at most this much; weights within it are used as the file has them.
-const float sumTolerance = 0.02f;
+// The rounding of up to sixteen floats, and less than one step of 16 bits.
+const double sumRounding = 1e-6;
+// Rounding weights to bytes one by one costs at most this much: mended without a warning.
+const double usualSumFault = 0.02;
 
 /// The joints and weights of a primitive: an array for each set, 4 numbers a vertex.
 struct Influences
@@ -228,10 +230,16 @@ Influences readInfluences(const Model& model, const tinygltf::Primitive& primiti
     return influences;
 }
 
-/// Makes the weights of each vertex non-negative with a sum of 1; returns the first fault.
-std::optional<std::string> mendWeights(std::vector<std::vector<float>>& sets)
+struct MendedWeights
 {
-    std::optional<std::string> first;
+    bool any = false;
+    std::optional<std::string> fault; ///< the first one that is more than rounding one by one
+};
+
+/// Makes the weights of each vertex non-negative with a sum of 1.
+MendedWeights mendWeights(std::vector<std::vector<float>>& sets)
+{
+    MendedWeights mended;
     const std::size_t vertices = sets.empty() ? 0 : sets[0].size() / 4;
     for (std::size_t v = 0; v < vertices; ++v)
     {
@@ -243,18 +251,20 @@ std::optional<std::string> mendWeights(std::vector<std::vector<float>>& sets)
                 negative = negative || weights[i] < 0.0f;
                 sum += std::max(weights[i], 0.0f);
             }
-        if (!negative && std::abs(sum - 1.0) <= sumTolerance) continue;
+        const double sumFault = std::abs(sum - 1.0);
+        if (!negative && sumFault <= sumRounding) continue;
+        mended.any = true;
         for (std::vector<float>& weights : sets)
             for (std::size_t i = 4 * v; i < 4 * v + 4; ++i)
                 weights[i] = sum > 0.0 ? static_cast<float>(std::max(weights[i], 0.0f) / sum) : 0.0f;
         if (sum == 0.0) sets[0][4 * v] = 1.0f;
-        if (!first)
-            first = "vertex " + std::to_string(v) + " has " +
-                    (negative    ? "a negative weight"
-                     : sum > 0.0 ? "weights that do not sum to 1"
-                                 : "no weight at all");
+        if (!mended.fault && (negative || sumFault > usualSumFault))
+            mended.fault = "vertex " + std::to_string(v) + " has " +
+                           (negative    ? "a negative weight"
+                            : sum > 0.0 ? "weights that do not sum to 1"
+                                        : "no weight at all");
     }
-    return first;
+    return mended;
 }
 
 /// The first primitive of the mesh with a weighted joint that the skin does not have.
@@ -309,11 +319,12 @@ private:
     std::optional<Error> checkWeights(std::size_t mesh, tinygltf::Primitive& primitive, const PrimitiveName& name)
     {
         Influences influences = readInfluences(_model, primitive);
-        const std::optional<std::string> mended = mendWeights(influences.weights);
+        const MendedWeights mended = mendWeights(influences.weights);
         _demands[mesh].add(influences);
-        if (!mended) return std::nullopt;
+        if (!mended.any) return std::nullopt;
         const std::string element = name.attributes() + ".WEIGHTS_0";
-        _report.warn(element + ": " + *mended + "; made to sum to 1, there and where else it is so");
+        if (mended.fault)
+            _report.warn(element + ": " + *mended.fault + "; made to sum to 1, there and where else it is so");
         for (std::size_t set = 0; set < influences.weights.size(); ++set)
         {
             if (!_budget.take(influences.weights[set].size() * sizeof(float)))

@@ -238,9 +238,7 @@ std::string wrongPointerOutput(const tinygltf::Accessor& output, const tinygltf:
 class AnimationValidation
 {
 public:
-    AnimationValidation(Model& model, Report& report) : _model(model), _report(report), _inputs(model.accessors.size())
-    {
-    }
+    AnimationValidation(Model& model, Report& report) : _model(model), _report(report) {}
 
     std::optional<Error> validate(std::size_t a)
     {
@@ -258,19 +256,10 @@ public:
             _report.warn(error->message + "; channel ignored");
             dropTarget(_model.animations[a].channels[c]);
         }
-        emptyIfFaulty(a);
         return std::nullopt;
     }
 
 private:
-    enum class Times
-    {
-        Unseen,
-        Good,
-        Negative, ///< the first one
-        Twice,    ///< one of them
-    };
-
     static bool isUsed(const tinygltf::AnimationChannel& channel)
     {
         return channel.target_node >= 0 || propertyOf(channel).has_value();
@@ -278,49 +267,11 @@ private:
 
     const tinygltf::Accessor& accessorOf(int index) const { return elementOf(_model.accessors, index); }
 
-    std::optional<Error> validateInput(int input, const std::string& name)
+    std::optional<Error> validateInput(int input, const std::string& name) const
     {
         const tinygltf::Accessor& accessor = accessorOf(input);
-        Times& seen = elementOf(_inputs, input);
-        if (seen != Times::Unseen) return std::nullopt;
-        if (accessor.type != TINYGLTF_TYPE_SCALAR || !isFloat(accessor))
-            return fault(name, "SCALAR of float", formatText(accessor) + in(input));
-        const std::vector<float> times = readFloats(_model, input);
-        seen = times[0] < 0.0f ? Times::Negative : Times::Good;
-        for (std::size_t i = 1; i < times.size(); ++i)
-        {
-            if (times[i] < times[i - 1])
-                return fault(name, "times that increase",
-                             numberText(times[i]) + " after " + numberText(times[i - 1]) + in(input));
-            if (times[i] == times[i - 1]) seen = Times::Twice;
-        }
-        return std::nullopt;
-    }
-
-    /// Removes the channels of an animation whose times are not valid for a clip.
-    void emptyIfFaulty(std::size_t a)
-    {
-        tinygltf::Animation& animation = _model.animations[a];
-        for (const tinygltf::AnimationChannel& channel : animation.channels)
-        {
-            if (!isUsed(channel)) continue;
-            const int input = elementOf(animation.samplers, channel.sampler).input;
-            const Times times = elementOf(_inputs, input);
-            if (times == Times::Good) continue;
-            _report.warn(elementName("animations", a, "samplers", channel.sampler) + ".input: " +
-                         (times == Times::Twice ? "expected times that increase, found " + firstTwice(input) + " twice"
-                                                : "the first time is negative") +
-                         in(input) + "; clip " + (animation.name.empty() ? "" : quoted(animation.name) + " ") +
-                         "skipped");
-            animation.channels.clear();
-            return;
-        }
-    }
-
-    std::string firstTwice(int input) const
-    {
-        const std::vector<float> times = readFloats(_model, input);
-        return numberText(*std::adjacent_find(times.begin(), times.end()));
+        if (accessor.type == TINYGLTF_TYPE_SCALAR && isFloat(accessor)) return std::nullopt;
+        return fault(name, "SCALAR of float", formatText(accessor) + in(input));
     }
 
     std::optional<Error> validateChannel(std::size_t a, std::size_t c)
@@ -409,7 +360,6 @@ private:
 
     Model& _model;
     Report& _report;
-    std::vector<Times> _inputs; ///< one per accessor of the file
     /// The accessor to take for a rotation output, by the file's accessor and whether it is read as CUBICSPLINE.
     std::map<std::pair<int, bool>, int> _rotations;
 };

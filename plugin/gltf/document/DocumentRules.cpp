@@ -181,7 +181,8 @@ std::optional<Error> checkAnimationRules(const JsonValue& animations, Report& re
     std::size_t i = 0;
     for (const JsonValue& animation : animations)
     {
-        const std::size_t samplers = animation["samplers"].size();
+        const JsonValue list = animation["samplers"];
+        const std::size_t samplers = list ? list.size() : 0;
         Properties animated;
         std::size_t c = 0;
         for (const JsonValue& channel : animation["channels"])

@@ -87,7 +87,8 @@ constexpr SchemaRule animationSampler[] = {index("input", "accessors").required(
                                            index("output", "accessors").required()};
 
 constexpr SchemaRule animation[] = {object("channels", channel).list().required().dropIfInvalid(),
-                                    object("samplers", animationSampler).list().required(), name, extras};
+                                    object("samplers", animationSampler).list().required().dropIfInvalid(), name,
+                                    extras};
 
 // ---------------------------------------------------------------------------------------------- images and materials
 

@@ -41,6 +41,14 @@ bool readLoopMode(const std::string& text, LoopMode& out)
     return text == "once" || text == "loop" || text == "pingpong";
 }
 
+bool readClipMatch(const std::string& text, ClipMatch& out)
+{
+    if (text == "byName") out = ClipMatch::ByName;
+    if (text == "retarget") out = ClipMatch::Retarget;
+    if (text == "auto") out = ClipMatch::Automatic;
+    return text == "byName" || text == "retarget" || text == "auto";
+}
+
 struct Option
 {
     const char* usage; ///< and help: see OptionHelp
@@ -85,6 +93,11 @@ const std::vector<Option>& allOptions()
         {"clipJoints=FILE", "joints of the model and their counterparts in clips=FILE, as JSON: {\"Hips\": \"pelvis\"}",
          "the name of a file",
          [](const std::string& value, ImportOptions& options) { return !(options.clipJoints = value).empty(); }},
+        {"clipMatch=auto|byName|retarget",
+         "byName: joints take the transforms of clips=FILE as they are; retarget: their difference from rest; default: "
+         "auto",
+         "auto, byName or retarget",
+         [](const std::string& value, ImportOptions& options) { return readClipMatch(value, options.clipMatch); }},
         {"start=SECONDS", "start time in that clip; beyond its end: its end", seconds,
          [](const std::string& value, ImportOptions& options)
          { return read(value, options.start.emplace()) && *options.start >= 0.0; }},
@@ -119,6 +132,8 @@ const std::vector<Option>& allOptions()
          "a name or a number", setText<&ImportOptions::variant>},
         {"camera=NAME|INDEX", "the camera that a viewer looks through at first; default: the viewer's own view",
          "a name or a number", setText<&ImportOptions::camera>},
+        {"wholeModel", "meshes that do not move are part of the animated character, too, so that crowds show them", "",
+         setFlag<&ImportOptions::wholeModel>},
         {"noCameras", "leave the file's cameras out", "", setFlag<&ImportOptions::noCameras>},
         {"noLights", "leave the file's lights out; default: GL's lights 1 to 7", "", setFlag<&ImportOptions::noLights>},
         {"noRotation", "keep glTF's +Y up; default: +Z up", "", setFlag<&ImportOptions::noRotation>},

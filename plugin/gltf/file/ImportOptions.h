@@ -2,6 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/LoopMode.h>
+#include <osgGpuAnimation/authoring/RetargetOptions.h>
 #include <osgGpuAnimation/math/Result.h>
 #include <osgGpuAnimation/nodes/CompactedCharacter.h>
 #include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
@@ -39,12 +40,15 @@ struct ImportOptions
     std::vector<std::string> clipsFiles;
     /// A JSON file of joint names for clipsFiles, see readClipFiles(); found as those are. Empty: none.
     std::string clipJoints;
-    OtherFormats otherFormats = nullptr; ///< for clipsFiles that are no glTF; null: there is no such reader
-    bool allowOutsideClips = false;      ///< clipsFiles and clipJoints alone may be anywhere
-    bool noKeys = false;                 ///< no CharacterKeys on the character
-    std::optional<int> scene;            ///< default: the file's own, else 0
-    bool noLights = false;               ///< leave the file's lights out
-    bool noCameras = false;              ///< leave the file's cameras out
+    ClipMatch clipMatch = ClipMatch::Automatic; ///< how the clips of clipsFiles fit the model
+    OtherFormats otherFormats = nullptr;        ///< for clipsFiles that are no glTF; null: there is no such reader
+    bool allowOutsideClips = false;             ///< clipsFiles and clipJoints alone may be anywhere
+    bool noKeys = false;                        ///< no CharacterKeys on the character
+    std::optional<int> scene;                   ///< default: the file's own, else 0
+    /// Meshes that do not move are part of the character of a file that has one, so that crowds show them.
+    bool wholeModel = false;
+    bool noLights = false;  ///< leave the file's lights out
+    bool noCameras = false; ///< leave the file's cameras out
     /// The camera of a viewer's first view: name, or index where none has that name; default: the viewer's own view
     std::optional<std::string> camera;
     /// The material variant shown at first: name, or index where none has that name; default: none

@@ -12,6 +12,7 @@
 #include <osgGpuAnimation/animation/bounds/TransformBound.h>
 #include <osgGpuAnimation/authoring/retarget/ClipRetargeter.h>
 #include <osgGpuAnimation/authoring/retarget/JointNames.h>
+#include <osgGpuAnimation/authoring/retarget/RigNames.h>
 #include <osgGpuAnimation/authoring/WithClipsOf.h>
 #include <osgGpuAnimation/nodes/properties/PropertyPointer.h>
 
@@ -31,13 +32,6 @@ namespace
 {
 
 constexpr std::size_t maxNameBytes = std::size_t(1) << 20; // of a file of joint names
-
-/// "Motion" is Assimp's name for the clip of each BVH.
-bool isGenericName(const std::string& clipName)
-{
-    return clipName.empty() || clipName.find("mixamo.com") != std::string::npos || clipName == "Take 001" ||
-           clipName == "Motion";
-}
 
 /// By its name or its first bytes. What is no regular file counts as one: reading it has the message.
 bool isGltf(const std::string& path)
@@ -118,10 +112,11 @@ Result<std::shared_ptr<const AnimationSet>> readSet(const std::string& path, con
     if (!joints) return joints.error();
     Morphs morphs = readMorphs(model.value());
     MemoryBudget budget(own.maxDecodedBytes);
-    Clips clips = readClips(model.value(), joints.value(), morphs, budget, ownReport);
+    const std::string fileName = osgDB::getStrippedName(path);
+    Clips clips = readClips(model.value(), joints.value(), morphs, fileName, budget, ownReport);
     for (std::size_t clip = 0; clip < clips.clips.size(); ++clip)
-        if (isGenericName(elementOf(model.value().animations, clips.animationOfClip[clip]).name))
-            clips.clips[clip] = clips.clips[clip].withName(osgDB::getStrippedName(path));
+        if (elementOf(model.value().animations, clips.animationOfClip[clip]).name.empty())
+            clips.clips[clip] = clips.clips[clip].withName(fileName);
     for (MorphWeights& morph : morphs.weights)
         if (target && morph.isProperty()) morph.name = pointerIn(*target, model.value(), morph.name);
     for (const std::string& warning : messages.warnings)
@@ -188,6 +183,18 @@ RetargetOptions retargetOptions(const ClipJoints& joints, const Skeleton& model,
         if (other || given->second.empty()) options.counterparts[joint.name] = other ? *other : "";
     }
     return options;
+}
+
+void noteMatch(const std::string& name, const RetargetedSet& result, Report& report)
+{
+    const auto differ = [&](std::size_t joints)
+    { return name + ": the rest pose differs from the model's (" + std::to_string(joints) + " joints); "; };
+    if (result.byName > 0)
+        report.note(differ(result.byName) +
+                    "it is the first frame of a clip, so the joints move as they do in the file: "
+                    "clipMatch=byName");
+    if (result.retargeted > 0)
+        report.note(differ(result.retargeted) + "the joints keep their difference from it: clipMatch=retarget");
 }
 
 Result<JsonTree> readNames(const ModelFolder& folder, const ImportOptions& options, Report& report)
@@ -276,27 +283,30 @@ std::vector<ClipFile> readClipFiles(const std::string& modelFile, const ImportOp
 std::vector<bool> nodesMovedBy(const std::vector<ClipFile>& files, const ClipJoints& joints,
                                const tinygltf::Model& model)
 {
-    std::unordered_set<std::string> moved;
+    std::vector<bool> nodes(model.nodes.size(), false);
+    std::unordered_set<std::string> moved; // by caselessJointName()
     for (const ClipFile& file : files)
     {
         const Skeleton& skeleton = file.set->skeleton();
         const std::vector<bool> isMoved = JointMoves::inAnyOf(skeleton, file.set->clips());
         for (std::size_t joint = 0; joint < isMoved.size(); ++joint)
-            if (isMoved[joint]) moved.insert(bareJointName(skeleton.joint(joint).name));
+            if (isMoved[joint]) moved.insert(caselessJointName(skeleton.joint(joint).name));
+        const std::vector<int> ofRole = RigNames::counterparts(namesIn(model.nodes), namesIn(skeleton.joints()));
+        for (std::size_t node = 0; node < nodes.size(); ++node)
+            if (ofRole[node] >= 0 && isMoved[static_cast<std::size_t>(ofRole[node])]) nodes[node] = true;
     }
-    std::vector<bool> nodes(model.nodes.size(), false);
     for (std::size_t node = 0; node < nodes.size(); ++node)
     {
         const std::string name = bareJointName(model.nodes[node].name);
         const auto given = joints.counterparts.find(name);
-        const bool isGiven = given != joints.counterparts.end() && moved.count(bareJointName(given->second)) > 0;
-        nodes[node] = !name.empty() && (isGiven || moved.count(name) > 0);
+        const bool isGiven = given != joints.counterparts.end() && moved.count(caselessJointName(given->second)) > 0;
+        if (!name.empty() && (isGiven || moved.count(caselessJointName(name)) > 0)) nodes[node] = true;
     }
     return nodes;
 }
 
 Result<std::shared_ptr<const AnimationSet>> withClipsOf(const std::shared_ptr<const AnimationSet>& set,
-                                                        const ClipFile& file, const ClipJoints& joints,
+                                                        const ClipFile& file, const ClipJoints& joints, ClipMatch match,
                                                         MemoryBudget& budget, Report& report)
 {
     const auto refuse = [&](const std::string& why) { return Error{file.name + ": " + why}; };
@@ -305,9 +315,11 @@ Result<std::shared_ptr<const AnimationSet>> withClipsOf(const std::shared_ptr<co
         bytes += clip.keyframeCount() * clip.transformsPerTrack() * set->trackCount() * sizeof(JointTransform);
     if (!budget.take(bytes))
         return refuse("its clips would take " + std::to_string(bytes) + " bytes, " + budget.limitText());
-    const Result<RetargetedSet> result =
-        osgGpuAnimation::withClipsOf(*set, *file.set, retargetOptions(joints, set->skeleton(), file.set->skeleton()));
+    RetargetOptions options = retargetOptions(joints, set->skeleton(), file.set->skeleton());
+    options.match = match;
+    const Result<RetargetedSet> result = osgGpuAnimation::withClipsOf(*set, *file.set, options);
     if (!result) return refuse(result.error().message);
+    if (match == ClipMatch::Automatic) noteMatch(file.name, result.value(), report);
 
     const std::vector<std::string> atRest = namesInSkins(*set, result.value().atRest);
     const std::vector<std::string>& leftOut = result.value().leftOut;

@@ -6,6 +6,7 @@
 #include "gltf/file/Report.h"
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/authoring/RetargetOptions.h>
 
 #include <tiny_gltf.h>
 
@@ -46,8 +47,7 @@ void warnOfUnknownJoints(const ClipJoints& joints, const Skeleton& model, const 
 /// Reads the clips of all files that the options name; files without meshes are valid. Files that are no glTF need
 /// options.otherFormats. A file that cannot be read, has no clips, or is named twice, is left out with a warning.
 ///
-/// A clip whose name says nothing (none, Mixamo's `mixamo.com`, FBX's `Take 001`, `Motion` of a BVH) is named after its
-/// file.
+/// A clip without a name, or with a generic one (see isGenericClipName()), is named after its file.
 ///
 /// modelFile: the model's own file, see ModelFolder; the clips of that file itself are refused.
 /// target: the model that the clips are for. Its objects have the animated properties of the file's objects of the same
@@ -62,9 +62,10 @@ std::vector<bool> nodesMovedBy(const std::vector<ClipFile>& files, const ClipJoi
 /// The set with the clips of the file after its own, at least one, see osgGpuAnimation::withClipsOf(). Errors, which
 /// begin with the name of the file: those of that function; the clips exceed the budget; none can be played. Warnings:
 /// a clip that takes a joint too far is left out; the joints without a counterpart, those of the set only if skins name
-/// them. A given counterpart that the file does not have is ignored.
+/// them. A given counterpart that the file does not have is ignored. A note says how many joints with another rest pose
+/// were matched in which way, if `match` leaves the choice.
 Result<std::shared_ptr<const AnimationSet>> withClipsOf(const std::shared_ptr<const AnimationSet>& set,
-                                                        const ClipFile& file, const ClipJoints& joints,
+                                                        const ClipFile& file, const ClipJoints& joints, ClipMatch match,
                                                         MemoryBudget& budget, Report& report);
 
 } // namespace osgGpuAnimation::gltf

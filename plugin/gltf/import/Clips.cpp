@@ -8,8 +8,11 @@
 #include <osgGpuAnimation/animation/bounds/TransformBound.h>
 #include <osgGpuAnimation/authoring/ClipBuilder.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -44,8 +47,9 @@ const char* faultOf(const tinygltf::Value& marker)
     return marker.Get("name").IsString() ? "" : "no text as its name";
 }
 
-/// subject: the animation, for messages.
-std::vector<ClipMarker> readMarkers(const tinygltf::Value& extras, const std::string& subject, Report& report)
+/// subject: the animation, for messages. begin: the time in the file at which the clip begins.
+std::vector<ClipMarker> readMarkers(const tinygltf::Value& extras, double begin, const std::string& subject,
+                                    Report& report)
 {
     std::vector<ClipMarker> result;
     if (!extras.IsObject() || !extras.Has("markers")) return result;
@@ -56,7 +60,7 @@ std::vector<ClipMarker> readMarkers(const tinygltf::Value& extras, const std::st
         const tinygltf::Value& marker = markers.Get(i);
         const std::string fault = faultOf(marker);
         if (fault.empty())
-            result.push_back({marker.Get("time").GetNumberAsDouble(), marker.Get("name").Get<std::string>()});
+            result.push_back({marker.Get("time").GetNumberAsDouble() - begin, marker.Get("name").Get<std::string>()});
         else
             report.warn(subject + ".extras.markers[" + std::to_string(i) + "]: " + fault + "; marker skipped");
     }
@@ -70,13 +74,30 @@ std::size_t numbersIn(const tinygltf::Model& model, int input, int output)
     return times.count + values.count * componentCount(values);
 }
 
+/// Of keys with equal times the last one remains.
+void dropRepeatedKeys(Channel& channel)
+{
+    const std::size_t perKey = channel.values.size() / channel.times.size();
+    std::size_t kept = 0;
+    for (std::size_t key = 0; key < channel.times.size(); ++key)
+    {
+        if (kept > 0 && channel.times[kept - 1] == channel.times[key]) --kept;
+        channel.times[kept] = channel.times[key];
+        for (std::size_t i = 0; i < perKey; ++i)
+            channel.values[kept * perKey + i] = channel.values[key * perKey + i];
+        ++kept;
+    }
+    channel.times.resize(kept);
+    channel.values.resize(kept * perKey);
+}
+
 /// Reads one animation of the file after the other.
 class ClipReader
 {
 public:
-    ClipReader(const tinygltf::Model& model, const Joints& joints, const Morphs& morphs, MemoryBudget& budget,
-               Report& report)
-        : _model(model), _joints(joints), _morphs(morphs), _budget(budget), _report(report),
+    ClipReader(const tinygltf::Model& model, const Joints& joints, const Morphs& morphs, const std::string& fileName,
+               MemoryBudget& budget, Report& report)
+        : _model(model), _joints(joints), _morphs(morphs), _fileName(fileName), _budget(budget), _report(report),
           _builder(joints.skeleton, morphs.weights)
     {
     }
@@ -84,18 +105,34 @@ public:
     std::optional<Clip> read(std::size_t index);
 
 private:
-    /// False, with a warning, if the clip is at fault.
-    bool addChannel(const tinygltf::Animation& animation, std::size_t index);
+    struct ReadChannel
+    {
+        std::size_t index; ///< in the animation
+        int input;         ///< the accessor of its times
+        Channel channel;
+    };
+
+    void start(const tinygltf::Animation& animation, std::size_t index);
+    std::string nameOf(const tinygltf::Animation& animation, std::size_t index) const;
+    // These return false, with a warning, if the clip is at fault.
+    bool readChannel(const tinygltf::Animation& animation, std::size_t index);
+    bool addChannels();
     bool fail(const std::string& why);
+
+    double shiftToZero();
+    bool mendTimes(int input, Channel& channel);
 
     const tinygltf::Model& _model;
     const Joints& _joints;
     const Morphs& _morphs;
+    const std::string& _fileName;
     MemoryBudget& _budget;
     Report& _report;
     ClipBuilder _builder;
     std::string _clip;    ///< the animation that is being read, for messages
     std::string _channel; ///< its channel
+    std::vector<ReadChannel> _channels;
+    std::set<int> _faultyInputs; ///< accessors of times of which it has warned
     std::size_t _channelBytes =
         0; ///< of the keys read for this clip; freed with the channels, so only compared with the budget
 };
@@ -106,7 +143,15 @@ bool ClipReader::fail(const std::string& why)
     return false;
 }
 
-bool ClipReader::addChannel(const tinygltf::Animation& animation, std::size_t index)
+void ClipReader::start(const tinygltf::Animation& animation, std::size_t index)
+{
+    _clip = namedElement("animations", index, animation.name);
+    _channel.clear();
+    _channels.clear();
+    _channelBytes = 0;
+}
+
+bool ClipReader::readChannel(const tinygltf::Animation& animation, std::size_t index)
 {
     const tinygltf::AnimationChannel& source = animation.channels[index];
     _channel = "channels[" + std::to_string(index) + "]";
@@ -134,21 +179,73 @@ bool ClipReader::addChannel(const tinygltf::Animation& animation, std::size_t in
     if (property && property->member->isBoolean)
         for (double& value : channel.values)
             value = value == 0.0 ? 0.0 : 1.0;
-    const Result<void> added = _builder.add(std::move(channel));
-    return added ? true : fail(added.error().message);
+    _channels.push_back({index, sampler.input, std::move(channel)});
+    return true;
+}
+
+/// Where the times begin before 0, the clip begins there. Returns that time.
+double ClipReader::shiftToZero()
+{
+    double begin = 0.0;
+    for (const ReadChannel& read : _channels)
+        begin = std::min(begin, read.channel.times.front());
+    if (begin == 0.0) return begin;
+    _report.warn(_clip + ": expected times from 0 on, found " + numberText(begin) + "; the clip begins there");
+    for (ReadChannel& read : _channels)
+        for (double& time : read.channel.times)
+            time = static_cast<double>(static_cast<float>(time - begin));
+    return begin;
+}
+
+/// False if a time is less than the one before it: its key may be misplaced or mistyped.
+bool ClipReader::mendTimes(int input, Channel& channel)
+{
+    const auto end = channel.times.end();
+    const auto equal = std::adjacent_find(channel.times.begin(), end, std::greater_equal<>());
+    if (equal == end) return true;
+    const auto less = std::is_sorted_until(equal, end);
+    const bool isSorted = less == end;
+    if (_faultyInputs.insert(input).second)
+        _report.warn(
+            _clip + "." + _channel + ": " + elementName("accessors", input) + ": expected times that increase, found " +
+            (isSorted ? numberText(*equal) + " twice; the last of such keys is used, here and in other channels"
+                      : numberText(*less) + " after " + numberText(*(less - 1)) +
+                            "; this channel and others with these times are skipped"));
+    if (isSorted) dropRepeatedKeys(channel);
+    return isSorted;
+}
+
+bool ClipReader::addChannels()
+{
+    bool any = _channels.empty(); // a clip without a target shows the rest pose
+    for (ReadChannel& read : _channels)
+    {
+        _channel = "channels[" + std::to_string(read.index) + "]";
+        if (!mendTimes(read.input, read.channel)) continue;
+        const Result<void> added = _builder.add(std::move(read.channel));
+        if (!added) return fail(added.error().message);
+        any = true;
+    }
+    _channel.clear();
+    return any || fail("no channel is left");
+}
+
+std::string ClipReader::nameOf(const tinygltf::Animation& animation, std::size_t index) const
+{
+    if (animation.name.empty()) return "clip " + std::to_string(index);
+    return isGenericClipName(animation.name) && !_fileName.empty() ? _fileName : animation.name;
 }
 
 std::optional<Clip> ClipReader::read(std::size_t index)
 {
     const tinygltf::Animation& animation = _model.animations[index];
-    _clip = namedElement("animations", index, animation.name);
-    _channel.clear();
-    _channelBytes = 0;
-    if (animation.channels.empty()) return std::nullopt; // the validation has emptied it and said why
+    start(animation, index);
+    if (animation.channels.empty()) return std::nullopt; // the document's check has said so
     bool good = true;
     for (std::size_t channel = 0; channel < animation.channels.size() && good; ++channel)
-        good = addChannel(animation, channel);
-    _channel.clear();
+        good = readChannel(animation, channel);
+    const double begin = good ? shiftToZero() : 0.0;
+    good = good && addChannels();
     const std::size_t bytes = _builder.byteSize();
     if (good && !_budget.take(bytes))
         good = fail("its keyframes would take " + std::to_string(bytes) + " bytes, " + _budget.limitText());
@@ -157,23 +254,28 @@ std::optional<Clip> ClipReader::read(std::size_t index)
         _builder = ClipBuilder(_joints.skeleton, _morphs.weights);
         return std::nullopt;
     }
-    Clip clip = _builder.build(animation.name.empty() ? "clip " + std::to_string(index) : animation.name);
+    Clip clip = _builder.build(nameOf(animation, index));
     if (!fits(_joints.skeleton, clip))
     {
         fail("it takes joints or weights " + outOfRangeText());
         return std::nullopt;
     }
-    Result<Clip> marked = clip.withMarkers(readMarkers(animation.extras, _clip, _report));
+    Result<Clip> marked = clip.withMarkers(readMarkers(animation.extras, begin, _clip, _report));
     return marked ? std::move(marked.value()) : std::move(clip);
 }
 
 } // namespace
 
-Clips readClips(const tinygltf::Model& model, const Joints& joints, const Morphs& morphs, MemoryBudget& budget,
-                Report& report)
+bool isGenericClipName(const std::string& name)
+{
+    return name.find("mixamo.com") != std::string::npos || name == "Take 001" || name == "Motion";
+}
+
+Clips readClips(const tinygltf::Model& model, const Joints& joints, const Morphs& morphs, const std::string& fileName,
+                MemoryBudget& budget, Report& report)
 {
     Clips result;
-    ClipReader reader(model, joints, morphs, budget, report);
+    ClipReader reader(model, joints, morphs, fileName, budget, report);
     for (std::size_t index = 0; index < model.animations.size(); ++index)
     {
         std::optional<Clip> clip = reader.read(index);

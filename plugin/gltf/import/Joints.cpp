@@ -130,6 +130,17 @@ void addNodesOfProperties(const tinygltf::Model& model, const NodeTree& tree, st
     }
 }
 
+void addStillNodes(const tinygltf::Model& model, const NodeTree& tree, std::vector<bool>& nodes)
+{
+    const std::vector<bool> moved = driven(model, nodes, true);
+    if (std::find(moved.begin(), moved.end(), true) == moved.end()) return;
+    for (std::size_t index = 0; index < model.nodes.size(); ++index)
+    {
+        const tinygltf::Mesh* mesh = meshOf(model, model.nodes[index]);
+        if (mesh && tree.drawn[index] && carriesRigidMesh(model.nodes[index], *mesh)) nodes[index] = true;
+    }
+}
+
 bool isSkinned(const tinygltf::Node& node, const tinygltf::Primitive& primitive)
 {
     return node.skin >= 0 && primitive.attributes.count("JOINTS_0") > 0;

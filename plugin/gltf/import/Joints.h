@@ -38,6 +38,10 @@ int lightOf(const tinygltf::Node& node);
 /// animate: what is animated is part of the character. nodes: one per node.
 void addNodesOfProperties(const tinygltf::Model& model, const NodeTree& tree, std::vector<bool>& nodes);
 
+/// Sets the flags of all nodes with a rigid mesh, so that it is part of the character. Does nothing if nothing moves:
+/// then there is no character. nodes: one per node, true if something moves it; see addNodesOfProperties().
+void addStillNodes(const tinygltf::Model& model, const NodeTree& tree, std::vector<bool>& nodes);
+
 /// True if a primitive's vertices follow a skin: the node has one, and the primitive has JOINTS_0 (and WEIGHTS_0: the
 /// validation refuses one without the other).
 bool isSkinned(const tinygltf::Node& node, const tinygltf::Primitive& primitive);

@@ -129,6 +129,7 @@ ClipRetargeter::Factors ClipRetargeter::factorsOf(const JointMatch& match) const
     factors.copiesTranslation = hasSameFrame && (!match.movesBody || isSameSize) &&
                                 RestPose::areAlike(own.rest.translation, other.rest.translation,
                                                    RestPose::tolerance * RestPose::longestJoint(_to.skeleton));
+    if (match.isByName) factors.copiesRotation = factors.copiesTranslation = true;
     factors.copiesScale =
         factors.copiesRotation && RestPose::areAlike(own.rest.scale, other.rest.scale, RestPose::tolerance);
     return factors;
@@ -292,7 +293,10 @@ void ClipRetargeter::keepOnGround(const Clip& clip, std::vector<JointTransform>&
 {
     std::vector<Soles> bodies;
     for (const BodyMatch& body : _match.bodies())
-        if (!_match.joints()[body.hips].isSameRig) bodies.emplace_back(_match, body);
+    {
+        const JointMatch& hips = _match.joints()[body.hips];
+        if (!hips.isSameRig && !hips.isByName) bodies.emplace_back(_match, body);
+    }
     if (bodies.empty()) return;
     const std::size_t perTrack = clip.transformsPerTrack(), stride = _trackCount * perTrack;
     std::vector<glm::vec4> before(bodies.size(), glm::vec4(0.0f)); // the shifts at the keyframe before
@@ -379,7 +383,7 @@ Result<Clip> ClipRetargeter::retarget(const Clip& clip) const
         writer.follow(joint, _factors[match], moves[joint.source]);
         const bool isDirect =
             joint.isBelow && countAt(_from.skeleton.joint(joint.source).parent) == countAt(joint.above);
-        if (!isDirect) afar.push_back(match);
+        if (!isDirect && !joint.isByName) afar.push_back(match);
     }
     for (std::size_t k = 0; k < clip.keyframeCount() && !afar.empty(); ++k)
     {

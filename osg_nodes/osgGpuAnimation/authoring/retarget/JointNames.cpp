@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/authoring/retarget/JointNames.h>
 
+#include <algorithm>
+#include <cctype>
 #include <unordered_map>
 
 namespace osgGpuAnimation
@@ -46,25 +48,47 @@ std::string bareJointName(const std::string& name)
     return bare.empty() ? name : bare;
 }
 
+std::string caselessJointName(const std::string& name)
+{
+    std::string folded = bareJointName(name);
+    std::transform(folded.begin(), folded.end(), folded.begin(),
+                   [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+    return folded;
+}
+
 std::vector<int> findCounterparts(const std::vector<std::string>& names, const std::vector<std::string>& others,
                                   const std::map<std::string, std::string>& given)
 {
-    NameIndex exact, bare;
+    NameIndex exact, bare, caseless;
     for (std::size_t other = 0; other < others.size(); ++other)
     {
         exact.add(others[other], static_cast<int>(other));
         bare.add(bareJointName(others[other]), static_cast<int>(other));
+        caseless.add(caselessJointName(others[other]), static_cast<int>(other));
     }
-    std::unordered_map<std::string, std::size_t> exactCounts, bareCounts;
+    const auto wantedBy = [&](const std::string& name) -> const std::string&
+    {
+        const auto entry = given.find(name);
+        return entry == given.end() ? name : entry->second;
+    };
+    std::unordered_map<std::string, std::size_t> exactCounts, bareCounts, caselessCounts;
+    std::vector<bool> isTaken(others.size(), false);
     std::vector<int> counterparts;
     for (const std::string& name : names)
     {
-        const auto entry = given.find(name);
-        const std::string& wanted = entry == given.end() ? name : entry->second;
+        const std::string& wanted = wantedBy(name);
         const std::string wantedBare = bareJointName(wanted);
         const int same = exact.find(wanted, exactCounts[wanted]++);
         const int similar = bare.find(wantedBare, bareCounts[wantedBare]++);
         counterparts.push_back(same >= 0 ? same : similar);
+        if (counterparts.back() >= 0) isTaken[static_cast<std::size_t>(counterparts.back())] = true;
+    }
+    for (std::size_t i = 0; i < names.size(); ++i)
+    {
+        if (counterparts[i] >= 0) continue;
+        const std::string wanted = caselessJointName(wantedBy(names[i]));
+        const int found = caseless.find(wanted, caselessCounts[wanted]++);
+        if (found >= 0 && !isTaken[static_cast<std::size_t>(found)]) counterparts[i] = found;
     }
     return counterparts;
 }

@@ -12,6 +12,9 @@ namespace osgGpuAnimation
 /// "mixamorig:Hips", "mixamorig4_Hips", "mixamorigHips" and "Armature|hero:Hips".
 std::string bareJointName(const std::string& name);
 
+/// bareJointName() in small letters.
+std::string caselessJointName(const std::string& name);
+
 /// The names of joints, morphs and other elements that have one.
 template <typename T>
 std::vector<std::string> namesIn(const std::vector<T>& elements)
@@ -25,8 +28,9 @@ std::vector<std::string> namesIn(const std::vector<T>& elements)
 /// Finds the counterparts of joints by name. One per name: an index of `others`, -1 where there is none.
 ///
 /// A name of `given` has the counterpart that `given` names, or none where that is empty. Other names have the joint of
-/// the same name, else of the same bareJointName(). Of several joints with one name, the n-th has the n-th as its
-/// counterpart, and the first one where there are fewer. Empty names have no counterpart.
+/// the same name, else of the same bareJointName(), else of the same caselessJointName() if no name before has it. Of
+/// several joints with one name, the n-th has the n-th as its counterpart, and the first one where there are fewer.
+/// Empty names have no counterpart.
 std::vector<int> findCounterparts(const std::vector<std::string>& names, const std::vector<std::string>& others,
                                   const std::map<std::string, std::string>& given);
 

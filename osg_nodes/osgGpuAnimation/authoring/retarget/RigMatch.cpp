@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/authoring/retarget/RigMatch.h>
 
 #include <osgGpuAnimation/authoring/retarget/JointNames.h>
+#include <osgGpuAnimation/authoring/retarget/RigNames.h>
 #include <osgGpuAnimation/math/Rotation.h>
 
 #include <glm/geometric.hpp>
@@ -36,6 +37,34 @@ bool isCalledHips(const std::string& jointName)
                    [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
     const bool isHips = name.find("hip") != std::string::npos || name.find("pelvis") != std::string::npos;
     return isHips && !isOfOneSide(name);
+}
+
+/// Of the longest joint: exporters round, and files in other units are scaled.
+constexpr double boneTolerance = 1e-4;
+
+bool isNear(const glm::dquat& a, const glm::dquat& b)
+{
+    return std::abs(glm::dot(a, b)) > 1.0 - 1e-6; // some 0.2 degrees
+}
+
+/// True if the rest pose of these joints is the first keyframe of the clip, and no mere turn of the whole body, which
+/// has no channel.
+bool isFirstFrame(const Clip& clip, const Skeleton& skeleton, const std::vector<const JointMatch*>& joints)
+{
+    bool anyTurns = false;
+    for (const JointMatch* match : joints)
+    {
+        const glm::dquat rest = RestPose::unitOf(skeleton.joint(match->source).rest.rotation);
+        const auto isAtRest = [&](std::size_t keyframe)
+        { return isNear(RestPose::unitOf(clip.at(keyframe, match->source)->rotation), rest); };
+        if (!isAtRest(0)) return false;
+        bool turns = false;
+        for (std::size_t k = 1; k < clip.keyframeCount() && !turns; ++k)
+            turns = !isAtRest(k);
+        if (match->movesBody && !turns) return false;
+        anyTurns = anyTurns || turns;
+    }
+    return anyTurns;
 }
 
 std::optional<Error> findFault(const Rig& from, const Rig& to, const RetargetOptions& options)
@@ -128,6 +157,8 @@ RigMatch::RigMatch(const Rig& from, const Rig& to, const RetargetOptions& option
       _morphCounterparts(findCounterparts(namesIn(to.morphs), namesIn(from.morphs), {})),
       _areHips(to.skeleton.jointCount())
 {
+    RigNames::addCounterparts(namesIn(to.skeleton.joints()), namesIn(from.skeleton.joints()), options.counterparts,
+                              _jointCounterparts);
     for (std::size_t morph = 0; morph < to.morphs.size(); ++morph)
     {
         int& source = _morphCounterparts[morph];
@@ -157,6 +188,7 @@ Result<RigMatch> RigMatch::create(const Rig& from, const Rig& to, const Retarget
                      quotedNames(to.skeleton.joints(), nameOf)};
     match.findBodies(to.skeleton);
     match.markBodies(to.skeleton);
+    match.markByName(from, to, options.match);
     return match;
 }
 
@@ -207,6 +239,48 @@ void RigMatch::markSameRigs(const Rig& from, const Rig& to)
     }
     for (JointMatch& match : _matches)
         match.isSameRig = isSame[topOf[match.joint]];
+}
+
+/// True if the joints with a counterpart have the same offsets from their parents; those that move the body may be
+/// anywhere.
+bool RigMatch::hasSameBones(const Rig& from, const Rig& to) const
+{
+    const double nearby = boneTolerance * RestPose::longestJoint(to.skeleton);
+    return std::all_of(_matches.begin(), _matches.end(),
+                       [&](const JointMatch& match)
+                       {
+                           const Joint& own = to.skeleton.joint(match.joint);
+                           const Joint& other = from.skeleton.joint(match.source);
+                           if (match.movesBody || own.parent < 0) return true;
+                           return other.parent >= 0 && _jointCounterparts[own.parent] == other.parent &&
+                                  RestPose::areAlike(own.rest.translation, other.rest.translation, nearby);
+                       });
+}
+
+/// The joints whose counterparts have other rest rotations.
+std::vector<const JointMatch*> RigMatch::otherRests(const Rig& from, const Rig& to) const
+{
+    std::vector<const JointMatch*> others;
+    for (const JointMatch& match : _matches)
+        if (!isNear(RestPose::unitOf(to.skeleton.joint(match.joint).rest.rotation),
+                    RestPose::unitOf(from.skeleton.joint(match.source).rest.rotation)))
+            others.push_back(&match);
+    return others;
+}
+
+void RigMatch::markByName(const Rig& from, const Rig& to, ClipMatch wanted)
+{
+    if (wanted == ClipMatch::Retarget) return;
+    if (wanted == ClipMatch::Automatic)
+    {
+        if (!from.clips || !hasSameBones(from, to)) return;
+        const std::vector<const JointMatch*> others = otherRests(from, to);
+        if (std::none_of(from.clips->begin(), from.clips->end(),
+                         [&](const Clip& clip) { return isFirstFrame(clip, from.skeleton, others); }))
+            return;
+    }
+    for (JointMatch& match : _matches)
+        match.isByName = !match.isSameRig;
 }
 
 /// The joints of that name; without a name those that are called so, else the first joint below which the body

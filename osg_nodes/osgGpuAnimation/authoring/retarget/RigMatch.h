@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/animation/Clip.h>
 #include <osgGpuAnimation/animation/Skeleton.h>
 #include <osgGpuAnimation/authoring/RetargetOptions.h>
 
@@ -14,11 +15,12 @@
 namespace osgGpuAnimation
 {
 
-/// A skeleton and its morph weights. Both must outlive it.
+/// A skeleton, its morph weights and, of the clips' rig, the clips. All must outlive it.
 struct Rig
 {
     const Skeleton& skeleton;
     const std::vector<MorphWeights>& morphs;
+    const std::vector<Clip>* clips = nullptr;
 };
 
 /// Where the joints of a skeleton are in one pose, in model space.
@@ -70,6 +72,7 @@ struct JointMatch
     /// All joints with a counterpart that are connected with this one have the same local rest transforms: whatever
     /// moved or turned the rig as a whole, its local transforms are the same.
     bool isSameRig = false;
+    bool isByName = false;  ///< takes the local transforms as they are, in spite of another rest pose
     bool movesBody = false; ///< true for the hips and the joints above them: their translations count
     double ratio = 1.0;     ///< of the hip heights, `to` by `from`
 };
@@ -101,6 +104,9 @@ private:
     RigMatch(const Rig& from, const Rig& to, const RetargetOptions& options);
     void addMatches(const Rig& from, const Rig& to);
     void markSameRigs(const Rig& from, const Rig& to);
+    void markByName(const Rig& from, const Rig& to, ClipMatch wanted);
+    bool hasSameBones(const Rig& from, const Rig& to) const;
+    std::vector<const JointMatch*> otherRests(const Rig& from, const Rig& to) const;
     void findHips(const Skeleton& skeleton, const std::string& name);
     void findBodies(const Skeleton& skeleton);
     void markBodies(const Skeleton& skeleton);

@@ -10,6 +10,9 @@
 namespace osgGpuAnimation
 {
 
+namespace
+{
+
 /// OSG's reader of COLLADA has the texture of a material in unit 1 unless an option of its own tells otherwise;
 /// characters have theirs in unit 0.
 osg::ref_ptr<osgDB::Options> withTexturesFromUnit0(const osgDB::Options* options)
@@ -19,6 +22,8 @@ osg::ref_ptr<osgDB::Options> withTexturesFromUnit0(const osgDB::Options* options
         changed->setOptionString(changed->getOptionString() + " daeUseSequencedTextureUnits");
     return changed;
 }
+
+} // namespace
 
 /// The pseudo-loader for osgAnimation's scenes: `nathan.osg.gpuanim` reads `nathan.osg` with the plugin of its
 /// extension and puts AnimatedCharacters in the places of its skeletons; see osganimation::convertOsgAnimation().

@@ -23,6 +23,8 @@ without=(
     ShadowGLTest ShadowPluginGLTest
     # its record of buffers in vertex array objects, programs whose matrices contexts share, warnings of its own
     BindingsGLTest JoiningModelsGLTest ViewersGLTest.contextsThatShare 'TwoContextsGLTest.*Shared' SerializersGLTest
+    # drawings of osgAnimation, plugins that are not built here
+    ConvertedScenesGLTest CommandFailuresGLTest PlantedPluginsGLTest
     # a program that prepareFirstDraw() does not foresee in a core profile
     FirstDrawGLTest.theFirstFrame ReadmeStartGLTest.aSceneIsCompiled
 )

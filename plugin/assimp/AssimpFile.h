@@ -27,9 +27,10 @@ namespace osgGpuAnimation::assimp
 /// Errors: those bounds; Assimp cannot read the file; see glbOf().
 Result<std::string> readAsGlb(const std::string& fileName, const gltf::ImportOptions& options, gltf::Report& report);
 
-/// The scene behind readAsGlb(), owned by the importer, with what is wrong in a version of Assimp mended.
+/// The scene behind readAsGlb(), owned by the importer, with what is wrong in a version of Assimp mended and with what
+/// it loses of FBX added (see completeFbx()).
 Result<const aiScene*> readScene(Assimp::Importer& importer, const std::string& fileName,
-                                 const gltf::ImportOptions& options);
+                                 const gltf::ImportOptions& options, gltf::Report& report);
 
 /// True for an extension (`fbx`) of Assimp's list.
 bool isFormat(const std::string& extension);

@@ -21,7 +21,7 @@ namespace osgGpuAnimation::assimp
 namespace
 {
 
-constexpr double rotationTolerance = 5e-4, relativeTolerance = 1e-4;
+constexpr double rotationTolerance = 1e-3, relativeTolerance = 1e-4;
 
 aiMatrix4x4 toAssimp(const glm::dmat4& matrix)
 {
@@ -92,9 +92,11 @@ T** newArray(const std::vector<T*>& elements, unsigned int& count)
 
 const fbx::ModelTracks* tracksOf(const fbx::Take& take, int model)
 {
-    for (const fbx::ModelTracks& each : take.models)
-        if (static_cast<int>(each.model) == model) return &each;
-    return nullptr;
+    if (model < 0) return nullptr;
+    const auto number = static_cast<std::size_t>(model);
+    const auto found = std::lower_bound(take.models.begin(), take.models.end(), number,
+                                        [](const fbx::ModelTracks& each, std::size_t to) { return each.model < to; });
+    return found != take.models.end() && found->model == number ? &*found : nullptr;
 }
 
 class FbxCompletion

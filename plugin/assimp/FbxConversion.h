@@ -14,7 +14,7 @@ namespace osgGpuAnimation::assimp
 /// NodeMarks.h), and writes all takes as animations of seconds.
 ///
 /// Tracks have the keys of the file, and more where interpolation between two keys would deviate from the curves: by
-/// 0.0005 radians in rotations, by 1/10,000 of the largest value elsewhere. Each take begins at 0 and ends at its
+/// 0.001 radians in rotations, by 1/10,000 of the largest value elsewhere. Each take begins at 0 and ends at its
 /// duration; a stepped key becomes two keys at neighbouring times.
 ///
 /// Segment Scale Compensate becomes a node between the parent, where that is scaled, and the model.

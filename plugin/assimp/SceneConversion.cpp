@@ -130,6 +130,7 @@ std::optional<Error> SceneWriter::addNodes(std::size_t maxDepth)
 {
     json& nodes = _writer.document["nodes"] = json::array();
     std::vector<Node> open{{_scene.mRootNode, 0, 1}};
+    std::set<std::string> ambiguous;
     while (!open.empty())
     {
         const Node next = open.back();
@@ -138,10 +139,16 @@ std::optional<Error> SceneWriter::addNodes(std::size_t maxDepth)
         const std::size_t number = gltf::append(nodes, {{"name", marksOf(*next.node).name}});
         if (number > 0) nodes[next.parent]["children"].push_back(number);
         _nodes.push_back(next);
-        _numbers.emplace(next.node->mName.C_Str(), number);
+        const std::string name = next.node->mName.C_Str();
+        if (!_numbers.emplace(name, number).second && _animated.erase(name) > 0) ambiguous.insert(name);
         for (unsigned int i = next.node->mNumChildren; i > 0; --i)
             open.push_back({next.node->mChildren[i - 1], number, next.depth + 1});
     }
+    for (const std::string& name : ambiguous)
+        _report.warn(
+            "node " + gltf::quoted(name) +
+            ": several have the name, and animations name it; the first one moves. Give them names of their own");
+    _animated.insert(ambiguous.begin(), ambiguous.end());
     for (std::size_t number = 0; number < _nodes.size(); ++number)
     {
         nodes[number].update(transformOf(*_nodes[number].node));

@@ -117,13 +117,15 @@ private:
     {
         _scene.bytesForAssimp.replace(static_cast<std::size_t>(view.data() - _bytes.data()), with.size(), with);
     }
+    /// taken: takes it, too.
     std::string uniqueName(std::string_view name, std::set<std::string, std::less<>>& taken);
 
     Scene& _scene;
     const std::string& _bytes; ///< of which the document has views
     const Document& _document;
     double _ticksPerSecond = ticksPerSecond;
-    std::vector<std::int64_t> _order; ///< ids as the file has them
+    std::map<std::string, std::size_t> _attempts; ///< to find other names of the same length
+    std::vector<std::int64_t> _order;             ///< ids as the file has them
     std::vector<std::int64_t> _modelIds;
     std::unordered_map<std::int64_t, Object> _objects;
     std::unordered_map<std::int64_t, std::vector<Connection>> _sources, _destinations; ///< in the order of the file
@@ -207,8 +209,9 @@ void SceneReader::readConnections()
 std::string SceneReader::uniqueName(std::string_view name, std::set<std::string, std::less<>>& taken)
 {
     std::string made(name);
+    std::size_t& attempt = _attempts[made]; // goes on where the last of this name ended
     constexpr std::string_view digits = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz";
-    for (std::size_t attempt = 0; !taken.insert(made).second; ++attempt)
+    for (; !taken.insert(made).second; ++attempt)
     {
         std::size_t rest = attempt, place = made.size();
         for (; place > 0 && (rest > 0 || place == made.size()); --place, rest /= digits.size())

@@ -73,8 +73,8 @@ struct ShapeTrack
 struct Take
 {
     std::string name;
-    double begin = 0.0, end = 0.0; ///< seconds of the file
-    std::vector<ModelTracks> models;
+    double begin = 0.0, end = 0.0;   ///< seconds of the file
+    std::vector<ModelTracks> models; ///< ascending
     std::vector<ShapeTrack> shapes;
     std::vector<std::string> hidden; ///< names of models whose visibility it animates
 };

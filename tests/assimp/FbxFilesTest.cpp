@@ -78,7 +78,7 @@ TEST_F(FbxPivotsTest, aDoorTurnsAboutItsRotationPivot)
     read(file);
     EXPECT_NEAR(bounds(0, 1.0).min.x, 0.5, near);
     EXPECT_NEAR(bounds(0, 1.0).max.x, 1.5, near);
-    // On the way, the middle of the box keeps its distance from the pivot: 0.0005 of the turn is lost at most.
+    // On the way, the middle of the box keeps its distance from the pivot: 0.001 of a radian is lost at most.
     for (const double time : {0.1, 0.37, 0.5, 0.9})
     {
         const Bounds box = bounds(0, time);

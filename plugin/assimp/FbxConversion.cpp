@@ -183,6 +183,9 @@ void FbxCompletion::placeNodes()
         const bool isModel = found != _models.end() && next.node != _scene.mRootNode;
         const bool isHidden = isModel && _fbx.models[found->second].isHidden;
         if (isModel) place(*next.node, _fbx.models[found->second], next.isBelowHidden);
+        if (!isModel && next.node != _scene.mRootNode)
+            _report.warn("node " + gltf::quoted(std::string(next.node->mName.C_Str())) +
+                         ": Assimp gives it a name that is not in the file; pivots and takes do not reach it");
         for (aiNode* const child : children)
             open.push_back({child, next.isBelowHidden || isHidden});
     }
@@ -264,9 +267,6 @@ void FbxCompletion::writeTakes()
     std::vector<aiAnimation*> animations;
     for (const fbx::Take& take : _fbx.takes)
     {
-        for (const std::string& name : take.hidden)
-            _report.warn("take " + gltf::quoted(take.name) + ": the visibility of node " + gltf::quoted(name) +
-                         " changes; it stays as it is at rest");
         std::vector<aiNodeAnim*> channels;
         std::vector<aiMeshMorphAnim*> morphs;
         for (std::size_t model = 0; model < _fbx.models.size(); ++model)

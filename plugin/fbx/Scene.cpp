@@ -85,10 +85,12 @@ private:
     void readObjects();
     void readConnections();
     void readModels();
+    void warnOfInheritance();
     void readShapes();
     void readTakes();
     void readTake(std::int64_t id, const Object& stack);
     void readCurveNode(std::int64_t id, std::int64_t layer, Take& take, std::map<std::size_t, ModelTracks>& tracks);
+    void warnOfLost(std::int64_t curveNode, std::string_view name, const Model& model, const Take& take);
     void setMissingRests(const Take& take);
     void addCurves(std::int64_t curveNode, std::int64_t layerId, AnimatedVector& vector);
     void setRange(const Element& stack, Take& take);
@@ -252,7 +254,7 @@ void SceneReader::readModels()
         model.postRotation = vector(element, "PostRotation", glm::dvec3(0.0));
         constexpr double withoutParentScale = 2.0;
         model.compensatesScale = number(element, "InheritType", 1.0) == withoutParentScale;
-        model.isHidden = number(element, "Visibility", 1.0) <= 0.0 || number(element, "Show", 1.0) == 0.0;
+        model.isHidden = number(element, "Visibility", 1.0) <= 0.0;
         const glm::dmat4 one(1.0);
         model.geometric = glm::translate(one, vector(element, "GeometricTranslation", glm::dvec3(0.0))) *
                           glm::mat4_cast(rotationOf(vector(element, "GeometricRotation", glm::dvec3(0.0)), 0)) *
@@ -261,10 +263,27 @@ void SceneReader::readModels()
         _modelIds.push_back(id);
         _scene.models.push_back(std::move(model));
     }
-    for (const auto& [id, number] : _models)
-        for (const Connection& each : destinations(id))
+    for (std::size_t number = 0; number < _modelIds.size(); ++number)
+        for (const Connection& each : destinations(_modelIds[number]))
             if (const auto parent = _models.find(each.other); parent != _models.end() && each.property.empty())
                 _scene.models[number].parent = static_cast<int>(parent->second);
+    warnOfInheritance();
+}
+
+/// InheritType 0, the scale of the parent along the axes of the model, is a matrix that shears where that scale has
+/// axes.
+void SceneReader::warnOfInheritance()
+{
+    for (std::size_t number = 0; number < _modelIds.size(); ++number)
+    {
+        const Model& model = _scene.models[number];
+        if (model.parent < 0 || this->number(*object(_modelIds[number])->element, "InheritType", 1.0) != 0.0) continue;
+        const glm::dvec3& above = _scene.models[static_cast<std::size_t>(model.parent)].scale;
+        if (above.x != above.y || above.y != above.z)
+            _scene.warnings.push_back("node \"" + model.name +
+                                      "\": expected InheritType 1 or 2 below a parent that is scaled by axes, found 0; "
+                                      "read as 1: give the parent one scale for all axes");
+    }
 }
 
 void SceneReader::readShapes()
@@ -302,8 +321,17 @@ void SceneReader::readShapes()
 
 void SceneReader::readTakes()
 {
+    std::string constraint;
+    std::size_t constraints = 0;
     for (const std::int64_t id : _order)
-        if (const Object& each = *object(id); each.kind == "AnimationStack") readTake(id, each);
+    {
+        const Object& each = *object(id);
+        if (each.kind == "AnimationStack") readTake(id, each);
+        if (each.kind == "Constraint" && constraints++ == 0) constraint = each.name;
+    }
+    if (constraints > 0)
+        _scene.warnings.push_back(std::to_string(constraints) + " constraints, the first of them \"" + constraint +
+                                  "\", move nothing: bake the animation when you export");
 }
 
 void SceneReader::readTake(std::int64_t id, const Object& stack)
@@ -316,8 +344,11 @@ void SceneReader::readTake(std::int64_t id, const Object& stack)
         const Object* const found = object(layer.other);
         if (!found || found->kind != "AnimationLayer") continue;
         for (const Connection& node : sources(layer.other))
-            if (const Object* const curveNode = object(node.other);
-                curveNode && curveNode->kind == "AnimationCurveNode")
+            if (node.property == "Weight")
+                _scene.warnings.push_back("take \"" + take.name +
+                                          "\": it animates the weight of a layer, which stays as it is at rest: merge "
+                                          "the layers when you export");
+            else if (const Object* const curves = object(node.other); curves && curves->kind == "AnimationCurveNode")
                 readCurveNode(node.other, layer.other, take, tracks);
     }
     for (auto& [model, each] : tracks)
@@ -343,19 +374,13 @@ void SceneReader::readCurveNode(std::int64_t id, std::int64_t layer, Take& take,
         const auto found = _models.find(target.other);
         if (found == _models.end()) continue;
         const Model& model = _scene.models[found->second];
-        if (target.property == "Visibility")
+        const bool isMove = target.property == "Lcl Translation" || target.property == "Lcl Rotation" ||
+                            target.property == "Lcl Scaling";
+        if (!isMove)
         {
-            bool changes = false;
-            for (const Connection& source : sources(id))
-                if (const Object* const curve = object(source.other); curve && curve->kind == "AnimationCurve")
-                    for (const double value : curve->element->numbers("KeyValueFloat"))
-                        changes = changes || (value <= 0.0) != model.isHidden;
-            if (changes) take.hidden.push_back(model.name);
+            warnOfLost(id, target.property, model, take);
             continue;
         }
-        if (target.property != "Lcl Translation" && target.property != "Lcl Rotation" &&
-            target.property != "Lcl Scaling")
-            continue;
         ModelTracks made{found->second, {}, {}, {}};
         made.translation.rest = model.translation;
         made.rotation.rest = model.rotation;
@@ -367,6 +392,27 @@ void SceneReader::readCurveNode(std::int64_t id, std::int64_t layer, Take& take,
                                                                         : all.scale;
         addCurves(id, layer, animated);
     }
+}
+
+/// Curves of what a clip cannot move.
+void SceneReader::warnOfLost(std::int64_t curveNode, std::string_view name, const Model& model, const Take& take)
+{
+    constexpr std::string_view lost[] = {"Visibility",       "RotationOffset",       "RotationPivot",
+                                         "ScalingOffset",    "ScalingPivot",         "PreRotation",
+                                         "PostRotation",     "GeometricTranslation", "GeometricRotation",
+                                         "GeometricScaling", "RotationOrder",        "InheritType"};
+    if (std::find(std::begin(lost), std::end(lost), name) == std::end(lost)) return;
+    std::vector<double> values;
+    for (const Connection& source : sources(curveNode))
+        if (const Object* const curve = object(source.other); curve && curve->kind == "AnimationCurve")
+            for (const double value : curve->element->numbers("KeyValueFloat"))
+                values.push_back(name == "Visibility" ? static_cast<double>(value > 0.0) : value);
+    const bool isStill = name == "Visibility"
+                             ? std::count(values.begin(), values.end(), model.isHidden ? 1.0 : 0.0) == 0
+                             : values.empty();
+    if (isStill) return;
+    _scene.warnings.push_back("take \"" + take.name + "\": it animates " + std::string(name) + " of node \"" +
+                              model.name + "\", which no clip can: it stays as it is at rest");
 }
 
 /// A property that the model lacks rests where its first take begins, as Maya's export of game animations means it.

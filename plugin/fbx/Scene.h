@@ -76,7 +76,6 @@ struct Take
     double begin = 0.0, end = 0.0;   ///< seconds of the file
     std::vector<ModelTracks> models; ///< ascending
     std::vector<ShapeTrack> shapes;
-    std::vector<std::string> hidden; ///< names of models whose visibility it animates
 };
 
 /// What Assimp loses of an FBX file (versions 7.0 to 7.7): pivots, animations as they are, the weights of shapes, the

@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace osgGpuAnimation
 {
@@ -317,14 +318,37 @@ TEST_F(FbxNodesTest, hiddenNodesAreNotDrawn)
 {
     SmallFbx file;
     file.model(1, "seen").box(2, 1).model(3, "guide", "P: \"Visibility\", \"Visibility\", \"\", \"A\",0").box(4, 3);
-    file.take(50, "Blink", 0, 1).curve(50, 1, "Visibility", "Visibility", {{0, 1}, {1, 0}});
     read(file);
     for (const gltf::ImportedPrimitive& primitive : model.primitives)
         EXPECT_EQ(primitive.geometry->getNodeMask() == 0u,
                   model.nodeNames[static_cast<std::size_t>(primitive.node)] == "guide");
-    ASSERT_EQ(messages.warnings.size(), 1u);
-    EXPECT_EQ(messages.warnings[0],
-              "take \"Blink\": the visibility of node \"seen\" changes; it stays as it is at rest");
+    EXPECT_TRUE(messages.warnings.empty());
+}
+
+TEST_F(FbxNodesTest, whatIsLostIsAMessageThatNamesIt)
+{
+    const std::string inherits = "P: \"InheritType\", \"enum\", \"\", \"\",0\n",
+                      spheric = "P: \"RotationOrder\", \"enum\", \"\", \"\",6\n";
+    SmallFbx file;
+    file.model(1, "seen", spheric + SmallFbx::vector("Lcl Scaling", 1, 2, 1)).box(2, 1).model(3, "tip", inherits, 1);
+    file.take(50, "Blink", 0, 1).curve(50, 1, "Visibility", "Visibility", {{0, 1}, {1, 0}});
+    file.curve(50, 1, "RotationPivot", "X", {{0, 0}, {1, 50}}).curve(50, 51, "Weight", "Weight", {{0, 0}, {1, 100}});
+    file.curve(50, 3, "Visibility", "Visibility", {{0, 1}, {1, 1}}); // it is visible at rest, too
+    file.constraint(60, "Aim");
+    read(file);
+    const char* const expected[] = {
+        "node \"seen\": its rotation order is spheric; read as XYZ",
+        "node \"tip\": expected InheritType 1 or 2 below a parent that is scaled by axes, found 0; read as 1: give the "
+        "parent one scale for all axes",
+        "take \"Blink\": it animates Visibility of node \"seen\", which no clip can: it stays as it is at rest",
+        "take \"Blink\": it animates RotationPivot of node \"seen\", which no clip can: it stays as it is at rest",
+        "take \"Blink\": it animates the weight of a layer, which stays as it is at rest: merge the layers when you "
+        "export",
+        "1 constraints, the first of them \"Aim\", move nothing: bake the animation when you export",
+    };
+    ASSERT_EQ(messages.warnings.size(), std::size(expected)) << messages.warnings.back();
+    for (std::size_t i = 0; i < std::size(expected); ++i)
+        EXPECT_EQ(messages.warnings[i], expected[i]);
 }
 
 /// Assimp 5.2 ends the process.

@@ -112,6 +112,11 @@ a: 0,2,3,-2,4,5,7,-7,0,1,5,-5,2,6,7,-4,0,4,6,-3,1,3,7,-6
             "C: \"OP\"," + std::to_string(curve) + ',' + std::to_string(node) + ", \"d|" + component + "\"\n";
         return *this;
     }
+    SmallFbx& constraint(int id, const std::string& name)
+    {
+        _objects += "Constraint: " + std::to_string(id) + ", \"Constraint::" + name + "\", \"Aim\" {\n}\n";
+        return *this;
+    }
     SmallFbx& connect(int source, int destination)
     {
         _connections += "C: \"OO\"," + std::to_string(source) + ',' + std::to_string(destination) + "\n";

@@ -14,6 +14,8 @@
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace osgGpuAnimation::assimp
 {
@@ -97,6 +99,90 @@ const fbx::ModelTracks* tracksOf(const fbx::Take& take, int model)
     const auto found = std::lower_bound(take.models.begin(), take.models.end(), number,
                                         [](const fbx::ModelTracks& each, std::size_t to) { return each.model < to; });
     return found != take.models.end() && found->model == number ? &*found : nullptr;
+}
+
+using VectorKeys = std::vector<std::pair<double, glm::dvec3>>;
+
+/// How a node moves in a take: a model, or the node of the parent's inverse scale above it, which has its translation.
+struct Motion
+{
+    const fbx::Model& model;
+    const fbx::ModelTracks* tracks; ///< null: it rests
+    double metres;
+    bool hasTranslation = true;
+    const fbx::Model* parent = nullptr; ///< whose inverse scale is all that the node has besides; null: a model's node
+    const fbx::ModelTracks* parentTracks = nullptr;
+
+    fbx::Placement placement(double time, bool before) const
+    {
+        return tracks ? model.placement(tracks->translation.at(time, before), tracks->rotation.at(time, before),
+                                        tracks->scale.at(time, before))
+                      : model.rest();
+    }
+
+    VectorKeys translations(const fbx::Take& take) const
+    {
+        std::vector<double> times;
+        if (tracks && hasTranslation) tracks->translation.appendTimes(times);
+        if (tracks && hasTranslation && model.hasPivots())
+        {
+            tracks->rotation.appendTimes(times);
+            tracks->scale.appendTimes(times);
+        }
+        return vectors(std::move(times), take,
+                       [this](double time, bool before)
+                       { return hasTranslation ? metres * placement(time, before).translation : glm::dvec3(0.0); });
+    }
+
+    VectorKeys scales(const fbx::Take& take) const
+    {
+        std::vector<double> times;
+        if (tracks && !parent) tracks->scale.appendTimes(times);
+        if (parentTracks) parentTracks->scale.appendTimes(times);
+        return vectors(std::move(times), take,
+                       [this](double time, bool before)
+                       {
+                           if (!parent) return placement(time, before).scale;
+                           return inverseScale(parentTracks ? parentTracks->scale.at(time, before) : parent->scale);
+                       });
+    }
+
+    std::vector<std::pair<double, glm::dquat>> rotations(const fbx::Take& take) const
+    {
+        std::vector<double> times;
+        if (tracks && !parent) tracks->rotation.appendTimes(times);
+        const auto rotation = [this](double time, bool before)
+        { return parent ? glm::dquat(1.0, 0.0, 0.0, 0.0) : placement(time, before).rotation; };
+        const auto slerped = [](const glm::dquat& a, const glm::dquat& b, double share)
+        { return glm::slerp(a, b, share); };
+        const auto angle = [](const glm::dquat& a, const glm::dquat& b)
+        {
+            const glm::dquat difference = glm::conjugate(a) * b; // the acos of the product is inexact near 1
+            return 2.0 * std::asin(std::min(1.0, glm::length(glm::dvec3(difference.x, difference.y, difference.z))));
+        };
+        return sampledTrack(std::move(times), take.begin, take.end, rotation, slerped, angle, rotationTolerance);
+    }
+
+    template <class Function>
+    static VectorKeys vectors(std::vector<double> times, const fbx::Take& take, const Function& function)
+    {
+        double size = glm::length(function(take.begin, false));
+        for (const double time : times)
+            size = std::max(size, glm::length(function(time, false)));
+        return sampledTrack(
+            std::move(times), take.begin, take.end, function,
+            [](const glm::dvec3& a, const glm::dvec3& b, double share) { return glm::mix(a, b, share); },
+            [](const glm::dvec3& a, const glm::dvec3& b) { return glm::length(a - b); }, relativeTolerance * size);
+    }
+};
+
+aiVectorKey* vectorKeys(const VectorKeys& keys, unsigned int& count)
+{
+    count = static_cast<unsigned int>(keys.size());
+    aiVectorKey* const array = new aiVectorKey[keys.size()];
+    for (std::size_t i = 0; i < keys.size(); ++i)
+        array[i] = aiVectorKey(keys[i].first, toAssimp(keys[i].second));
+    return array;
 }
 
 class FbxCompletion
@@ -297,68 +383,18 @@ void FbxCompletion::addModel(const fbx::Take& take, std::size_t model, std::vect
 aiNodeAnim* FbxCompletion::transforms(const std::string& node, const fbx::Take& take, std::size_t number,
                                       bool isScaleOfParent) const
 {
-    const fbx::Model& model = _fbx.models[number];
-    const fbx::ModelTracks* const tracks = tracksOf(take, static_cast<int>(number));
-    const fbx::ModelTracks* const above = isScaleOfParent ? tracksOf(take, model.parent) : nullptr;
-    const bool hasOwnTranslation = isScaleOfParent || _compensated.count(number) == 0;
-    const auto placement = [&](double time, bool before)
+    Motion motion{_fbx.models[number], tracksOf(take, static_cast<int>(number)), _metres};
+    motion.hasTranslation = isScaleOfParent || _compensated.count(number) == 0;
+    if (isScaleOfParent)
     {
-        return tracks ? model.placement(tracks->translation.at(time, before), tracks->rotation.at(time, before),
-                                        tracks->scale.at(time, before))
-                      : model.rest();
-    };
-    const auto translation = [&](double time, bool before)
-    { return hasOwnTranslation ? _metres * placement(time, before).translation : glm::dvec3(0.0); };
-    const auto rotation = [&](double time, bool before)
-    { return isScaleOfParent ? glm::dquat(1.0, 0.0, 0.0, 0.0) : placement(time, before).rotation; };
-    const auto scale = [&](double time, bool before)
-    {
-        if (!isScaleOfParent) return placement(time, before).scale;
-        return inverseScale(above ? above->scale.at(time, before)
-                                  : _fbx.models[static_cast<std::size_t>(model.parent)].scale);
-    };
-    const auto mixed = [](const glm::dvec3& a, const glm::dvec3& b, double share) { return glm::mix(a, b, share); };
-    const auto apart = [](const glm::dvec3& a, const glm::dvec3& b) { return glm::length(a - b); };
-    const auto slerped = [](const glm::dquat& a, const glm::dquat& b, double share) { return glm::slerp(a, b, share); };
-    const auto angle = [](const glm::dquat& a, const glm::dquat& b)
-    {
-        const glm::dquat difference = glm::conjugate(a) * b; // the acos of the product is inexact near 1
-        return 2.0 * std::asin(std::min(1.0, glm::length(glm::dvec3(difference.x, difference.y, difference.z))));
-    };
-    std::vector<double> moves, turns, sizes;
-    if (tracks && hasOwnTranslation) tracks->translation.appendTimes(moves);
-    if (tracks && !isScaleOfParent) tracks->rotation.appendTimes(turns);
-    if (tracks && !isScaleOfParent) tracks->scale.appendTimes(sizes);
-    if (above) above->scale.appendTimes(sizes);
-    if (tracks && hasOwnTranslation && model.hasPivots())
-    {
-        tracks->rotation.appendTimes(moves);
-        tracks->scale.appendTimes(moves);
+        motion.parent = &_fbx.models[static_cast<std::size_t>(motion.model.parent)];
+        motion.parentTracks = tracksOf(take, motion.model.parent);
     }
-    const auto sizeOf = [&](const auto& function, const std::vector<double>& times)
-    {
-        double size = glm::length(function(take.begin, false));
-        for (const double time : times)
-            size = std::max(size, glm::length(function(time, false)));
-        return relativeTolerance * size;
-    };
-
-    const auto positions =
-        sampledTrack(moves, take.begin, take.end, translation, mixed, apart, sizeOf(translation, moves));
-    const auto rotations = sampledTrack(turns, take.begin, take.end, rotation, slerped, angle, rotationTolerance);
-    const auto scales = sampledTrack(sizes, take.begin, take.end, scale, mixed, apart, sizeOf(scale, sizes));
     aiNodeAnim* const made = new aiNodeAnim;
     made->mNodeName = node;
-    const auto keysOf = [](const auto& keys, unsigned int& count)
-    {
-        count = static_cast<unsigned int>(keys.size());
-        aiVectorKey* const array = new aiVectorKey[keys.size()];
-        for (std::size_t i = 0; i < keys.size(); ++i)
-            array[i] = aiVectorKey(keys[i].first, toAssimp(keys[i].second));
-        return array;
-    };
-    made->mPositionKeys = keysOf(positions, made->mNumPositionKeys);
-    made->mScalingKeys = keysOf(scales, made->mNumScalingKeys);
+    made->mPositionKeys = vectorKeys(motion.translations(take), made->mNumPositionKeys);
+    made->mScalingKeys = vectorKeys(motion.scales(take), made->mNumScalingKeys);
+    const auto rotations = motion.rotations(take);
     made->mNumRotationKeys = static_cast<unsigned int>(rotations.size());
     made->mRotationKeys = new aiQuatKey[rotations.size()];
     for (std::size_t i = 0; i < rotations.size(); ++i)

@@ -5,7 +5,6 @@
 #include "assimp/SceneConversion.h"
 #include "gltf/file/Uri.h"
 
-#include <assimp/commonMetaData.h>
 #include <assimp/config.h>
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
@@ -13,7 +12,6 @@
 #include <assimp/postprocess.h>
 #include <assimp/ProgressHandler.hpp>
 #include <assimp/scene.h>
-#include <assimp/version.h>
 
 #include <algorithm>
 #include <cctype>
@@ -21,9 +19,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <set>
 #include <system_error>
-#include <vector>
 
 namespace osgGpuAnimation::assimp
 {
@@ -76,47 +72,6 @@ private:
         std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(maxSeconds));
 };
 
-/// Assimp 5.4 alone gives the bones of FBX files offsets from the parent's local matrix in place of the mesh's world
-/// matrix (its issue 5642).
-bool hasOffsetsOfParents(const aiScene& scene)
-{
-    aiString format;
-    return aiGetVersionMajor() == 5 && aiGetVersionMinor() == 4 && scene.mMetaData &&
-           scene.mMetaData->Get(AI_METADATA_SOURCE_FORMAT, format) &&
-           std::string(format.C_Str()).find("FBX") != std::string::npos;
-}
-
-void correctOffsets(const aiScene& scene)
-{
-    struct Place
-    {
-        const aiNode* node;
-        aiMatrix4x4 world;
-    };
-    std::set<const aiMesh*> corrected;              // the first node that has it gave it its offsets
-    std::vector<Place> open{{scene.mRootNode, {}}}; // offsets come before the root's turn
-    while (!open.empty())
-    {
-        const Place parent = open.back();
-        open.pop_back();
-        aiMatrix4x4 withoutLocal = parent.node == scene.mRootNode ? aiMatrix4x4() : parent.node->mTransformation;
-        withoutLocal.Inverse();
-        for (unsigned int i = parent.node->mNumChildren; i > 0; --i)
-        {
-            const aiNode* const node = parent.node->mChildren[i - 1];
-            const aiMatrix4x4 world = parent.world * node->mTransformation;
-            open.push_back({node, world});
-            for (unsigned int number = 0; number < node->mNumMeshes; ++number)
-            {
-                const aiMesh* const mesh = scene.mMeshes[node->mMeshes[number]];
-                if (!corrected.insert(mesh).second) continue;
-                for (unsigned int bone = 0; bone < mesh->mNumBones; ++bone)
-                    mesh->mBones[bone]->mOffsetMatrix *= withoutLocal * world;
-            }
-        }
-    }
-}
-
 std::string firstLine(const std::string& text)
 {
     return text.substr(0, text.find('\n'));
@@ -154,7 +109,6 @@ Result<const aiScene*> readFbx(Assimp::Importer& importer, const std::string& fi
     const std::string& bytes = fbx.value().bytesForAssimp;
     if (!importer.ReadFileFromMemory(bytes.data(), bytes.size(), steps, "fbx")) return unreadable(importer);
     aiScene& scene = const_cast<aiScene&>(*importer.GetScene()); // on the heap, of the importer
-    if (hasOffsetsOfParents(scene)) correctOffsets(scene);
     completeFbx(scene, fbx.value(), report);
     return &scene;
 }

@@ -27,8 +27,7 @@ namespace osgGpuAnimation::assimp
 /// Errors: those bounds; Assimp cannot read the file; see glbOf().
 Result<std::string> readAsGlb(const std::string& fileName, const gltf::ImportOptions& options, gltf::Report& report);
 
-/// The scene behind readAsGlb(), owned by the importer, with what is wrong in a version of Assimp mended and with what
-/// it loses of FBX added (see completeFbx()).
+/// The scene behind readAsGlb(), owned by the importer, with what Assimp loses of FBX added (see completeFbx()).
 Result<const aiScene*> readScene(Assimp::Importer& importer, const std::string& fileName,
                                  const gltf::ImportOptions& options, gltf::Report& report);
 

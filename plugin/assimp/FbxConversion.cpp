@@ -209,6 +209,7 @@ private:
     void placeNodes();
     void place(aiNode& node, const fbx::Model& model, bool isBelowHidden);
     void moveMeshes(aiNode& node, const fbx::Model& model);
+    void setBones(aiMesh& mesh, const fbx::Model& model, const glm::dmat4& geometric) const;
     void setShapes(aiMesh& mesh, const fbx::Model& model);
 
     void writeTakes();
@@ -310,8 +311,7 @@ void FbxCompletion::moveMeshes(aiNode& node, const fbx::Model& model)
         hasBones = hasBones || mesh.mNumBones > 0;
         if (!_completed.insert(&mesh).second) continue;
         setShapes(mesh, model);
-        for (unsigned int bone = 0; isMoved && bone < mesh.mNumBones; ++bone)
-            mesh.mBones[bone]->mOffsetMatrix *= toAssimp(geometric);
+        setBones(mesh, model, geometric);
     }
     aiNode* drawn = &node;
     if (isMoved && node.mNumMeshes > 0 && !hasBones)
@@ -326,19 +326,38 @@ void FbxCompletion::moveMeshes(aiNode& node, const fbx::Model& model)
     if (!model.shapes.empty()) _morphed[_models.at(model.uniqueName)] = drawn->mName.C_Str();
 }
 
-/// Assimp's names are those of the channels; a channel with several targets comes once for each. Assimp 5.4 has the
-/// deformers in no order.
+/// Assimp 5.4 has other offset matrices than 5.2 and 6.0.
+void FbxCompletion::setBones(aiMesh& mesh, const fbx::Model& model, const glm::dmat4& geometric) const
+{
+    for (unsigned int i = 0; i < mesh.mNumBones; ++i)
+        for (const fbx::Binding& binding : model.bindings)
+        {
+            if (mesh.mBones[i]->mName != aiString(_fbx.models[binding.bone].uniqueName)) continue;
+            glm::dmat4 meshToBone = binding.meshToBone;
+            meshToBone[3] *= glm::dvec4(_metres, _metres, _metres, 1.0);
+            mesh.mBones[i]->mOffsetMatrix = toAssimp(meshToBone * geometric);
+            break;
+        }
+}
+
+/// Assimp's names are those of the channels, from 5.4 on with a point and the name of the target, and then in no order.
+/// A channel with several targets comes once for each.
 void FbxCompletion::setShapes(aiMesh& mesh, const fbx::Model& model)
 {
-    std::map<std::string, std::size_t> seen;
+    std::map<std::size_t, std::size_t> seen;
     for (unsigned int i = 0; i < mesh.mNumAnimMeshes && i < model.shapes.size(); ++i)
     {
         const fbx::ShapeChannel& channel = _fbx.channels[model.shapes[i]];
-        const auto isNamed = [&](const aiAnimMesh* each) { return each->mName == aiString(channel.uniqueName); };
+        const std::size_t target = seen[model.shapes[i]]++;
         aiAnimMesh** const end = mesh.mAnimMeshes + mesh.mNumAnimMeshes;
-        if (aiAnimMesh** const own = std::find_if(mesh.mAnimMeshes + i, end, isNamed); own != end)
+        for (const std::string& name : {channel.uniqueName + '.' + channel.targetNames[target], channel.uniqueName})
+        {
+            const auto isNamed = [&](const aiAnimMesh* each) { return each->mName == aiString(name); };
+            aiAnimMesh** const own = std::find_if(mesh.mAnimMeshes + i, end, isNamed);
+            if (own == end) continue;
             std::rotate(mesh.mAnimMeshes + i, own, own + 1);
-        const std::size_t target = seen[channel.uniqueName]++;
+            break;
+        }
         mesh.mAnimMeshes[i]->mWeight = static_cast<float>(channel.weight(target, channel.percent));
         mesh.mAnimMeshes[i]->mName = channel.name;
     }

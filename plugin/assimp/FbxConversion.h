@@ -18,7 +18,6 @@ namespace osgGpuAnimation::assimp
 /// duration; a stepped key becomes two keys at neighbouring times.
 ///
 /// Segment Scale Compensate becomes a node between the parent, where that is scaled, and the model.
-/// The offset matrices of bones must be those of Assimp already.
 void completeFbx(aiScene& scene, const fbx::Scene& fbx, gltf::Report& report);
 
 } // namespace osgGpuAnimation::assimp

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <set>
 #include <unordered_map>
@@ -20,32 +19,6 @@ namespace
 constexpr double ticksPerSecond = 46186158000.0, ticksPerSecondOfVersion8 = 141120000.0;
 constexpr int originalTimeDefinition = 127;
 constexpr std::string_view componentNames[3] = {"d|X", "d|Y", "d|Z"};
-
-glm::dquat turn(double degrees, const glm::dvec3& axis)
-{
-    return glm::angleAxis(glm::radians(degrees), axis);
-}
-
-/// Euler angles in degrees; the first letter of the order is applied first.
-glm::dquat rotationOf(const glm::dvec3& angles, int order)
-{
-    const glm::dquat x = turn(angles.x, {1, 0, 0}), y = turn(angles.y, {0, 1, 0}), z = turn(angles.z, {0, 0, 1});
-    switch (order)
-    {
-    case 1:
-        return y * z * x;
-    case 2:
-        return x * z * y;
-    case 3:
-        return z * x * y;
-    case 4:
-        return y * x * z;
-    case 5:
-        return x * y * z;
-    default:
-        return z * y * x;
-    }
-}
 
 /// An object of the file: `Model: 1001, "Model::door", "Mesh"`.
 struct Object
@@ -77,6 +50,7 @@ public:
         readConnections();
         readModels();
         readShapes();
+        readSkins();
         readTakes();
     }
 
@@ -87,6 +61,8 @@ private:
     void readModels();
     void warnOfInheritance();
     void readShapes();
+    void readSkins();
+    void addBinding(std::int64_t cluster, const Element& element, Model& model);
     void readTakes();
     void readTake(std::int64_t id, const Object& stack);
     void readCurveNode(std::int64_t id, std::int64_t layer, Take& take, std::map<std::size_t, ModelTracks>& tracks);
@@ -120,7 +96,8 @@ private:
         _scene.bytesForAssimp.replace(static_cast<std::size_t>(view.data() - _bytes.data()), with.size(), with);
     }
     /// taken: takes it, too.
-    std::string uniqueName(std::string_view name, std::set<std::string, std::less<>>& taken);
+    std::string uniqueName(std::string_view name, std::set<std::string, std::less<>>& taken,
+                           bool withoutPoints = false);
 
     Scene& _scene;
     const std::string& _bytes; ///< of which the document has views
@@ -208,9 +185,11 @@ void SceneReader::readConnections()
     }
 }
 
-std::string SceneReader::uniqueName(std::string_view name, std::set<std::string, std::less<>>& taken)
+std::string SceneReader::uniqueName(std::string_view name, std::set<std::string, std::less<>>& taken,
+                                    bool withoutPoints)
 {
     std::string made(name);
+    if (withoutPoints) std::replace(made.begin(), made.end(), '.', '_');
     std::size_t& attempt = _attempts[made]; // goes on where the last of this name ended
     constexpr std::string_view digits = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz";
     for (; !taken.insert(made).second; ++attempt)
@@ -288,20 +267,21 @@ void SceneReader::warnOfInheritance()
 
 void SceneReader::readShapes()
 {
-    std::set<std::string, std::less<>> taken;
+    std::set<std::string, std::less<>> taken, takenTargets;
     for (const std::int64_t id : _order)
     {
         const Object& each = *object(id);
         if (each.kind != "Deformer" || each.type != "BlendShapeChannel") continue;
         ShapeChannel channel;
         channel.name = each.name;
-        channel.uniqueName = uniqueName(each.name, taken);
+        channel.uniqueName = uniqueName(each.name, taken, true);
         const Element* const direct = each.element->child("DeformPercent");
         channel.percent =
             number(*each.element, "DeformPercent", direct && !direct->values.empty() ? direct->values[0].number : 0.0);
         if (!std::isfinite(channel.percent)) channel.percent = 0.0;
         for (const Connection& source : sources(id))
-            if (const Object* const shape = object(source.other); shape && shape->kind == "Geometry") ++channel.targets;
+            if (const Object* const shape = object(source.other); shape && shape->kind == "Geometry")
+                channel.targetNames.push_back(uniqueName(shape->name, takenTargets));
         channel.fullPercents = each.element->numbers("FullWeights");
         _channels.emplace(id, _scene.channels.size());
         _scene.channels.push_back(std::move(channel));
@@ -315,7 +295,32 @@ void SceneReader::readShapes()
                 for (const Connection& source : sources(deformer.other))
                     if (const auto channel = _channels.find(source.other); channel != _channels.end())
                         _scene.models[model].shapes.insert(_scene.models[model].shapes.end(),
-                                                           _scene.channels[channel->second].targets, channel->second);
+                                                           _scene.channels[channel->second].targets(), channel->second);
+        }
+}
+
+void SceneReader::readSkins()
+{
+    for (std::size_t model = 0; model < _modelIds.size(); ++model)
+        for (const Connection& geometry : sources(_modelIds[model]))
+            for (const Connection& skin : sources(geometry.other))
+                for (const Connection& cluster : sources(skin.other))
+                    if (const Object* const found = object(cluster.other); found && found->type == "Cluster")
+                        addBinding(cluster.other, *found->element, _scene.models[model]);
+}
+
+void SceneReader::addBinding(std::int64_t cluster, const Element& element, Model& model)
+{
+    const std::vector<double> numbers = element.numbers("Transform"); // of row vectors, row by row
+    if (numbers.size() != 16) return;
+    Binding binding{0, glm::dmat4(1.0)};
+    for (std::size_t i = 0; i < 16; ++i)
+        binding.meshToBone[static_cast<int>(i / 4)][static_cast<int>(i % 4)] = numbers[i];
+    for (const Connection& bone : sources(cluster))
+        if (const auto found = _models.find(bone.other); found != _models.end())
+        {
+            binding.bone = found->second;
+            model.bindings.push_back(binding);
         }
 }
 
@@ -476,41 +481,6 @@ void SceneReader::setRange(const Element& stack, Take& take)
 }
 
 } // namespace
-
-Placement Model::placement(const glm::dvec3& lclTranslation, const glm::dvec3& lclRotation,
-                           const glm::dvec3& lclScaling) const
-{
-    Placement made;
-    made.rotation = rotationOf(preRotation, 0) * rotationOf(lclRotation, rotationOrder) *
-                    glm::conjugate(rotationOf(postRotation, 0));
-    made.scale = lclScaling;
-    made.translation = lclTranslation + rotationOffset + rotationPivot +
-                       made.rotation * (scalingOffset + scalingPivot - rotationPivot - lclScaling * scalingPivot);
-    return made;
-}
-
-bool Model::hasPivots() const
-{
-    return rotationPivot != glm::dvec3(0.0) || scalingOffset != glm::dvec3(0.0) || scalingPivot != glm::dvec3(0.0);
-}
-
-double ShapeChannel::weight(std::size_t target, double atPercent) const
-{
-    if (target >= targets) return 0.0;
-    constexpr std::size_t base = std::numeric_limits<std::size_t>::max();
-    std::vector<std::pair<double, std::size_t>> shapes{{0.0, base}};
-    for (std::size_t i = 0; i < targets; ++i)
-        shapes.emplace_back(fullPercents.size() == targets ? fullPercents[i] : 100.0, i);
-    std::sort(shapes.begin() + 1, shapes.end());
-    std::inplace_merge(shapes.begin(), shapes.begin() + 1, shapes.end());
-    std::size_t next = 1;
-    while (next + 1 < shapes.size() && atPercent > shapes[next].first)
-        ++next;
-    const auto [from, first] = shapes[next - 1];
-    const auto [to, last] = shapes[next];
-    const double share = to > from ? (atPercent - from) / (to - from) : 0.0;
-    return target == last ? share : target == first ? 1.0 - share : 0.0;
-}
 
 Result<Scene> Scene::read(std::string bytes)
 {

@@ -21,7 +21,8 @@ namespace osgGpuAnimation::assimp
 /// A file of any format that Assimp reads, as GLB; see glbOf(). Files of FBX become metres by their unit; other formats
 /// keep their numbers.
 ///
-/// Assimp checks files less than the reader of glTF does: a faulty file may end the process. What is bounded: the
+/// Assimp checks files less than the reader of glTF does: a faulty file may end the process. Plugins and tools call
+/// readAsGlbApart() (ConversionProcess.h), which starts another process for it. What is bounded: the
 /// file's size (maxFileBytes), other files that it names (in or below its folder, unless options.allowOutsideFiles),
 /// the time (maxSeconds, between the steps at which Assimp asks), and the result (options.maxDecodedBytes).
 /// Errors: those bounds; Assimp cannot read the file; see glbOf().

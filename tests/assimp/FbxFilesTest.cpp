@@ -286,6 +286,20 @@ TEST_F(FbxTakesTest, layersAddUp)
     EXPECT_NEAR(bounds(0, 1).min.x, -0.5 + 3.0, near);
 }
 
+TEST_F(FbxTakesTest, filesWithoutMeshesHaveClips)
+{
+    SmallFbx file;
+    file.model(1, "Hips", "", 0, "LimbNode")
+        .model(2, "Spine", SmallFbx::vector("Lcl Translation", 0, 30, 0), 1, "LimbNode");
+    file.take(50, "Run", 0, 1).curve(50, 2, "Lcl Rotation", "Z", {{0, 0}, {1, 90}});
+    read(file);
+    ASSERT_TRUE(model.set);
+    ASSERT_EQ(model.set->clips().size(), 1u);
+    EXPECT_NEAR(duration(0), 1.0, near);
+    EXPECT_GE(model.set->skeleton().findJoint("Spine"), 0);
+    EXPECT_TRUE(messages.warnings.empty()) << messages.warnings.front();
+}
+
 using FbxNodesTest = FbxFilesTest;
 
 TEST_F(FbxNodesTest, nodesOfOneNameMoveEachByItself)

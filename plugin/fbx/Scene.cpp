@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "fbx/Scene.h"
 
+#include "gltf/file/Report.h"
+
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 
@@ -199,8 +201,8 @@ std::string SceneReader::uniqueName(std::string_view name, std::set<std::string,
             made[place - 1] = digits[rest % digits.size()];
         if (rest > 0 || name.empty())
         {
-            _scene.warnings.push_back("several nodes or shapes have the name \"" + std::string(name) +
-                                      "\": they are taken as one; longer names tell them apart");
+            _scene.warnings.push_back("several nodes or shapes have the name " + gltf::quoted(name) +
+                                      ": they are taken as one; longer names tell them apart");
             return std::string(name);
         }
     }
@@ -224,7 +226,8 @@ void SceneReader::readModels()
         model.scale = vector(element, "Lcl Scaling", glm::dvec3(1.0));
         model.rotationOrder = static_cast<int>(std::clamp(number(element, "RotationOrder", 0.0), 0.0, 6.0));
         if (model.rotationOrder == 6)
-            _scene.warnings.push_back("node \"" + model.name + "\": its rotation order is spheric; read as XYZ");
+            _scene.warnings.push_back("node " + gltf::quoted(model.name) +
+                                      ": its rotation order is spheric; read as XYZ");
         model.rotationOffset = vector(element, "RotationOffset", glm::dvec3(0.0));
         model.rotationPivot = vector(element, "RotationPivot", glm::dvec3(0.0));
         model.scalingOffset = vector(element, "ScalingOffset", glm::dvec3(0.0));
@@ -259,8 +262,8 @@ void SceneReader::warnOfInheritance()
         if (model.parent < 0 || this->number(*object(_modelIds[number])->element, "InheritType", 1.0) != 0.0) continue;
         const glm::dvec3& above = _scene.models[static_cast<std::size_t>(model.parent)].scale;
         if (above.x != above.y || above.y != above.z)
-            _scene.warnings.push_back("node \"" + model.name +
-                                      "\": expected InheritType 1 or 2 below a parent that is scaled by axes, found 0; "
+            _scene.warnings.push_back("node " + gltf::quoted(model.name) +
+                                      ": expected InheritType 1 or 2 below a parent that is scaled by axes, found 0; "
                                       "read as 1: give the parent one scale for all axes");
     }
 }
@@ -335,8 +338,8 @@ void SceneReader::readTakes()
         if (each.kind == "Constraint" && constraints++ == 0) constraint = each.name;
     }
     if (constraints > 0)
-        _scene.warnings.push_back(std::to_string(constraints) + " constraints, the first of them \"" + constraint +
-                                  "\", move nothing: bake the animation when you export");
+        _scene.warnings.push_back(std::to_string(constraints) + " constraints, the first of them " +
+                                  gltf::quoted(constraint) + ", move nothing: bake the animation when you export");
 }
 
 void SceneReader::readTake(std::int64_t id, const Object& stack)
@@ -350,8 +353,8 @@ void SceneReader::readTake(std::int64_t id, const Object& stack)
         if (!found || found->kind != "AnimationLayer") continue;
         for (const Connection& node : sources(layer.other))
             if (node.property == "Weight")
-                _scene.warnings.push_back("take \"" + take.name +
-                                          "\": it animates the weight of a layer, which stays as it is at rest: merge "
+                _scene.warnings.push_back("take " + gltf::quoted(take.name) +
+                                          ": it animates the weight of a layer, which stays as it is at rest: merge "
                                           "the layers when you export");
             else if (const Object* const curves = object(node.other); curves && curves->kind == "AnimationCurveNode")
                 readCurveNode(node.other, layer.other, take, tracks);
@@ -416,8 +419,8 @@ void SceneReader::warnOfLost(std::int64_t curveNode, std::string_view name, cons
                              ? std::count(values.begin(), values.end(), model.isHidden ? 1.0 : 0.0) == 0
                              : values.empty();
     if (isStill) return;
-    _scene.warnings.push_back("take \"" + take.name + "\": it animates " + std::string(name) + " of node \"" +
-                              model.name + "\", which no clip can: it stays as it is at rest");
+    _scene.warnings.push_back("take " + gltf::quoted(take.name) + ": it animates " + std::string(name) + " of node " +
+                              gltf::quoted(model.name) + ", which no clip can: it stays as it is at rest");
 }
 
 /// A property that the model lacks rests where its first take begins, as Maya's export of game animations means it.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "assimp/AssimpFile.h"
+#include "assimp/ConversionProcess.h"
 #include "ModelReader.h"
 #include "serializers/RegistryHooks.h"
 
@@ -12,7 +12,7 @@ namespace osgGpuAnimation
 {
 
 /// The osgPlugin for what Assimp reads: `dancer.fbx`. With a pseudo-loader for formats of which OSG has readers, too:
-/// `01_01.bvh.assimp` reads `01_01.bvh`. See assimp::readAsGlb().
+/// `01_01.bvh.assimp` reads `01_01.bvh`. See assimp::readAsGlbApart().
 class ReaderWriterAssimp : public ModelReader
 {
 public:
@@ -44,7 +44,7 @@ public:
     }
 
 protected:
-    gltf::OtherFormats otherFormats() const override { return assimp::readAsGlb; }
+    gltf::OtherFormats otherFormats() const override { return assimp::readAsGlbApart; }
 
     std::string modelFile(const std::string& fileName) const override
     {
@@ -56,7 +56,7 @@ protected:
                                  gltf::Messages& messages) const override
     {
         gltf::Report report(messages);
-        return assimp::readAsGlb(path, options, report);
+        return assimp::readAsGlbApart(path, options, report);
     }
 };
 

@@ -10,7 +10,7 @@ build=$root/build
 view_packages=(
     g++ cmake ninja-build
     libopenscenegraph-dev libtinygltf-dev libdraco-dev libmeshoptimizer-dev libglm-dev libcli11-dev nlohmann-json3-dev
-    libpng-dev libturbojpeg0-dev libwebp-dev libassimp-dev
+    libpng-dev zlib1g-dev libturbojpeg0-dev libwebp-dev libassimp-dev
     libgl-dev libegl-dev openscenegraph libgl1-mesa-dri
 )
 # Further packages for the tests, and for .ci/run.

@@ -44,6 +44,8 @@ public:
             if (channel.mNumRotationKeys > 0) startAt(channel.mRotationKeys[0].mTime);
             if (channel.mNumScalingKeys > 0) startAt(channel.mScalingKeys[0].mTime);
         }
+        for (unsigned int i = 0; i < animation.mNumMorphMeshChannels; ++i)
+            if (animation.mMorphMeshChannels[i]->mNumKeys > 0) startAt(animation.mMorphMeshChannels[i]->mKeys[0].mTime);
     }
 
     /// Null: nothing moves.
@@ -101,9 +103,7 @@ private:
 
     void addWeights(const aiMeshMorphAnim& channel, const NodeNumbers& nodes, const MorphedNodes& morphed)
     {
-        // Assimp's reader of FBX appends "*" and the number of the geometry to the node's name.
-        const std::string name = channel.mName.C_Str();
-        const auto node = nodes.find(name.substr(0, name.rfind('*')));
+        const auto node = nodes.find(morphedNode(channel));
         if (node == nodes.end()) return;
         const auto [first, last] = morphed.equal_range(node->second);
         for (auto each = first; each != last; ++each)
@@ -129,6 +129,12 @@ private:
 };
 
 } // namespace
+
+std::string morphedNode(const aiMeshMorphAnim& channel)
+{
+    const std::string name = channel.mName.C_Str();
+    return name.substr(0, name.rfind('*'));
+}
 
 void writeAnimations(const aiScene& scene, const NodeNumbers& nodes, const MorphedNodes& morphed,
                      gltf::GlbWriter& writer, gltf::Report& report)

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "assimp/AssimpFile.h"
 
+#include "assimp/FbxConversion.h"
 #include "assimp/SceneConversion.h"
 #include "gltf/file/Uri.h"
 
-#include <assimp/commonMetaData.h>
 #include <assimp/config.h>
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
@@ -12,13 +12,14 @@
 #include <assimp/postprocess.h>
 #include <assimp/ProgressHandler.hpp>
 #include <assimp/scene.h>
-#include <assimp/version.h>
 
+#include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <filesystem>
-#include <set>
+#include <fstream>
+#include <iterator>
 #include <system_error>
-#include <vector>
 
 namespace osgGpuAnimation::assimp
 {
@@ -71,50 +72,45 @@ private:
         std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(maxSeconds));
 };
 
-/// Assimp 5.4 alone gives the bones of FBX files offsets from the parent's local matrix in place of the mesh's world
-/// matrix (its issue 5642).
-bool hasOffsetsOfParents(const aiScene& scene)
-{
-    aiString format;
-    return aiGetVersionMajor() == 5 && aiGetVersionMinor() == 4 && scene.mMetaData &&
-           scene.mMetaData->Get(AI_METADATA_SOURCE_FORMAT, format) &&
-           std::string(format.C_Str()).find("FBX") != std::string::npos;
-}
-
-void correctOffsets(const aiScene& scene)
-{
-    struct Place
-    {
-        const aiNode* node;
-        aiMatrix4x4 world;
-    };
-    std::set<const aiMesh*> corrected;              // the first node that has it gave it its offsets
-    std::vector<Place> open{{scene.mRootNode, {}}}; // offsets come before the root's turn
-    while (!open.empty())
-    {
-        const Place parent = open.back();
-        open.pop_back();
-        aiMatrix4x4 withoutLocal = parent.node == scene.mRootNode ? aiMatrix4x4() : parent.node->mTransformation;
-        withoutLocal.Inverse();
-        for (unsigned int i = parent.node->mNumChildren; i > 0; --i)
-        {
-            const aiNode* const node = parent.node->mChildren[i - 1];
-            const aiMatrix4x4 world = parent.world * node->mTransformation;
-            open.push_back({node, world});
-            for (unsigned int number = 0; number < node->mNumMeshes; ++number)
-            {
-                const aiMesh* const mesh = scene.mMeshes[node->mMeshes[number]];
-                if (!corrected.insert(mesh).second) continue;
-                for (unsigned int bone = 0; bone < mesh->mNumBones; ++bone)
-                    mesh->mBones[bone]->mOffsetMatrix *= withoutLocal * world;
-            }
-        }
-    }
-}
-
 std::string firstLine(const std::string& text)
 {
     return text.substr(0, text.find('\n'));
+}
+
+Error unreadable(const Assimp::Importer& importer)
+{
+    return {"Assimp cannot read it: " + gltf::printable(firstLine(importer.GetErrorString()), 300)};
+}
+
+constexpr unsigned int steps = aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_LimitBoneWeights |
+                               aiProcess_JoinIdenticalVertices | aiProcess_GenSmoothNormals | aiProcess_GlobalScale |
+                               aiProcess_FindInvalidData | aiProcess_ValidateDataStructure;
+
+std::string contentOf(const std::string& fileName)
+{
+    std::ifstream file(fileName, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+bool isFbx(const std::string& fileName)
+{
+    std::string extension = std::filesystem::path(fileName).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+    return extension == ".fbx";
+}
+
+Result<const aiScene*> readFbx(Assimp::Importer& importer, const std::string& fileName, gltf::Report& report)
+{
+    const Result<fbx::Scene> fbx = fbx::Scene::read(contentOf(fileName));
+    if (!fbx) return fbx.error();
+    // Pivots, which would become chains of nodes with names of Assimp's own, are completeFbx()'s.
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
+    const std::string& bytes = fbx.value().bytesForAssimp;
+    if (!importer.ReadFileFromMemory(bytes.data(), bytes.size(), steps, "fbx")) return unreadable(importer);
+    aiScene& scene = const_cast<aiScene&>(*importer.GetScene()); // on the heap, of the importer
+    completeFbx(scene, fbx.value(), report);
+    return &scene;
 }
 
 } // namespace
@@ -125,28 +121,23 @@ bool isFormat(const std::string& extension)
 }
 
 Result<const aiScene*> readScene(Assimp::Importer& importer, const std::string& fileName,
-                                 const gltf::ImportOptions& options)
+                                 const gltf::ImportOptions& options, gltf::Report& report)
 {
     std::error_code failure;
     if (std::filesystem::file_size(fileName, failure) > maxFileBytes && !failure)
         return Error{"the file has more than " + std::to_string(maxFileBytes) + " bytes"};
     importer.SetIOHandler(new FolderFiles(fileName, options.allowOutsideFiles)); // the importer deletes both
     importer.SetProgressHandler(new TimeLimit);
-    // Otherwise each joint of FBX becomes a chain of nodes with names of Assimp's own.
-    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
-    const aiScene* const scene = importer.ReadFile(
-        fileName, aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_LimitBoneWeights |
-                      aiProcess_JoinIdenticalVertices | aiProcess_GenSmoothNormals | aiProcess_GlobalScale |
-                      aiProcess_FindInvalidData | aiProcess_ValidateDataStructure);
-    if (!scene) return Error{"Assimp cannot read it: " + gltf::printable(firstLine(importer.GetErrorString()), 300)};
-    if (hasOffsetsOfParents(*scene)) correctOffsets(*scene);
+    if (isFbx(fileName)) return readFbx(importer, fileName, report);
+    const aiScene* const scene = importer.ReadFile(fileName, steps);
+    if (!scene) return unreadable(importer);
     return scene;
 }
 
 Result<std::string> readAsGlb(const std::string& fileName, const gltf::ImportOptions& options, gltf::Report& report)
 {
     Assimp::Importer importer;
-    const Result<const aiScene*> scene = readScene(importer, fileName, options);
+    const Result<const aiScene*> scene = readScene(importer, fileName, options, report);
     return scene ? glbOf(*scene.value(), fileName, options, report) : scene.error();
 }
 

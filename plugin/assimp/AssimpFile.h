@@ -21,15 +21,16 @@ namespace osgGpuAnimation::assimp
 /// A file of any format that Assimp reads, as GLB; see glbOf(). Files of FBX become metres by their unit; other formats
 /// keep their numbers.
 ///
-/// Assimp checks files less than the reader of glTF does: a faulty file may end the process. What is bounded: the
+/// Assimp checks files less than the reader of glTF does: a faulty file may end the process. Plugins and tools call
+/// readAsGlbApart() (ConversionProcess.h), which starts another process for it. What is bounded: the
 /// file's size (maxFileBytes), other files that it names (in or below its folder, unless options.allowOutsideFiles),
 /// the time (maxSeconds, between the steps at which Assimp asks), and the result (options.maxDecodedBytes).
 /// Errors: those bounds; Assimp cannot read the file; see glbOf().
 Result<std::string> readAsGlb(const std::string& fileName, const gltf::ImportOptions& options, gltf::Report& report);
 
-/// The scene behind readAsGlb(), owned by the importer, with what is wrong in a version of Assimp mended.
+/// The scene behind readAsGlb(), owned by the importer, with what Assimp loses of FBX added (see completeFbx()).
 Result<const aiScene*> readScene(Assimp::Importer& importer, const std::string& fileName,
-                                 const gltf::ImportOptions& options);
+                                 const gltf::ImportOptions& options, gltf::Report& report);
 
 /// True for an extension (`fbx`) of Assimp's list.
 bool isFormat(const std::string& extension);

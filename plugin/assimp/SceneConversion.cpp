@@ -4,6 +4,7 @@
 #include "assimp/AnimationConversion.h"
 #include "assimp/MaterialConversion.h"
 #include "assimp/MeshConversion.h"
+#include "assimp/NodeMarks.h"
 #include "gltf/export/GlbWriter.h"
 
 #include <assimp/scene.h>
@@ -65,8 +66,13 @@ public:
     SceneWriter(const aiScene& scene, gltf::Report& report) : _scene(scene), _report(report)
     {
         for (unsigned int i = 0; i < scene.mNumAnimations; ++i)
-            for (unsigned int channel = 0; channel < scene.mAnimations[i]->mNumChannels; ++channel)
-                _animated.insert(scene.mAnimations[i]->mChannels[channel]->mNodeName.C_Str());
+        {
+            const aiAnimation& animation = *scene.mAnimations[i];
+            for (unsigned int channel = 0; channel < animation.mNumChannels; ++channel)
+                _animated.insert(animation.mChannels[channel]->mNodeName.C_Str());
+            for (unsigned int channel = 0; channel < animation.mNumMorphMeshChannels; ++channel)
+                _animated.insert(morphedNode(*animation.mMorphMeshChannels[channel]));
+        }
     }
 
     std::optional<Error> write(const std::string& modelFile, const gltf::ImportOptions& options);
@@ -84,6 +90,7 @@ private:
     void addMeshes(std::size_t number, MeshWriter& meshes);
     std::size_t addChild(std::size_t parent, const std::string& name);
     json transformOf(const aiNode& node);
+    void hide(json& node);
 
     const aiScene& _scene;
     gltf::Report& _report;
@@ -111,7 +118,7 @@ std::optional<Error> SceneWriter::write(const std::string& modelFile, const gltf
     if (isTooLarge()) return tooLarge;
 
     std::size_t root = 0;
-    if (const aiMatrix4x4 turn = axesToYUp(_scene); !turn.IsIdentity())
+    if (const aiMatrix4x4 turn = axesToYUp(_scene); turn != aiMatrix4x4())
         root = gltf::append(_writer.document["nodes"],
                             {{"name", "axes"}, {"matrix", columnMajor(turn)}, {"children", json::array({0})}});
     _writer.document["scenes"] = json::array({json::object({{"nodes", json::array({root})}})});
@@ -123,21 +130,38 @@ std::optional<Error> SceneWriter::addNodes(std::size_t maxDepth)
 {
     json& nodes = _writer.document["nodes"] = json::array();
     std::vector<Node> open{{_scene.mRootNode, 0, 1}};
+    std::set<std::string> ambiguous;
     while (!open.empty())
     {
         const Node next = open.back();
         open.pop_back();
         if (next.depth > maxDepth) return Error{"the hierarchy of nodes is deeper than " + std::to_string(maxDepth)};
-        const std::size_t number = gltf::append(nodes, {{"name", next.node->mName.C_Str()}});
+        const std::size_t number = gltf::append(nodes, {{"name", marksOf(*next.node).name}});
         if (number > 0) nodes[next.parent]["children"].push_back(number);
         _nodes.push_back(next);
-        _numbers.emplace(next.node->mName.C_Str(), number);
+        const std::string name = next.node->mName.C_Str();
+        if (!_numbers.emplace(name, number).second && _animated.erase(name) > 0) ambiguous.insert(name);
         for (unsigned int i = next.node->mNumChildren; i > 0; --i)
             open.push_back({next.node->mChildren[i - 1], number, next.depth + 1});
     }
+    for (const std::string& name : ambiguous)
+        _report.warn(
+            "node " + gltf::quoted(name) +
+            ": several have the name, and animations name it; the first one moves. Give them names of their own");
+    _animated.insert(ambiguous.begin(), ambiguous.end());
     for (std::size_t number = 0; number < _nodes.size(); ++number)
+    {
         nodes[number].update(transformOf(*_nodes[number].node));
+        if (marksOf(*_nodes[number].node).isHidden) hide(nodes[number]);
+    }
     return std::nullopt;
+}
+
+void SceneWriter::hide(json& node)
+{
+    const char* const extension = "KHR_node_visibility";
+    node["extensions"][extension]["visible"] = false;
+    _writer.useExtension(extension);
 }
 
 json SceneWriter::transformOf(const aiNode& node)
@@ -145,11 +169,10 @@ json SceneWriter::transformOf(const aiNode& node)
     const aiMatrix4x4& matrix = node.mTransformation;
     if (!isFinite(matrix))
     {
-        _report.warn("node " + gltf::quoted(std::string(node.mName.C_Str())) +
-                     ": its matrix is not finite; taken as identity");
+        _report.warn("node " + gltf::quoted(marksOf(node).name) + ": its matrix is not finite; taken as identity");
         return json::object();
     }
-    if (matrix.IsIdentity()) return json::object();
+    if (matrix == aiMatrix4x4()) return json::object(); // IsIdentity() would take 1 cm as nothing
     if (_animated.count(node.mName.C_Str()) == 0) return {{"matrix", columnMajor(matrix)}};
     aiVector3D scale, translation;
     aiQuaternion rotation;
@@ -186,7 +209,7 @@ void SceneWriter::addMeshes(std::size_t number, MeshWriter& meshes)
         const std::optional<WrittenMesh> written = meshes.write(group, number);
         if (!written) continue;
         const bool isTaken = _writer.document["nodes"][number].contains("mesh");
-        const std::size_t drawn = isTaken ? addChild(number, node.mName.C_Str()) : number;
+        const std::size_t drawn = isTaken ? addChild(number, marksOf(node).name) : number;
         json& made = _writer.document["nodes"][drawn];
         made["mesh"] = written->mesh;
         if (written->skin) made["skin"] = *written->skin;

@@ -3,6 +3,7 @@
 
 #ifdef OSGGPUANIMATION_ASSIMP
 #include "assimp/AssimpFile.h"
+#include "assimp/ConversionProcess.h"
 #endif
 #include "gltf/Export.h"
 #include "gltf/file/ModelBytes.h"
@@ -50,7 +51,7 @@ Result<std::string> readGltf(const std::string& fileName, const gltf::ImportOpti
     gltf::Report report(messages);
 #ifdef OSGGPUANIMATION_ASSIMP
     if (!isCalledGltf(fileName) && assimp::isFormat(osgDB::getLowerCaseFileExtension(fileName)))
-        return assimp::readAsGlb(fileName, options, report);
+        return assimp::readAsGlbApart(fileName, options, report);
 #endif
     if (!isSceneFormat(fileName)) return gltf::readModelFile(fileName, options);
     const Result<osg::ref_ptr<osg::Node>> scene = readScene(fileName, report);
@@ -126,7 +127,7 @@ Result<gltf::ImportOptions> importOptions(const ModelArguments& arguments)
     options.clipMatch = arguments.clipMatch;
     if (arguments.compact > 0.0) options.compact = arguments.compact;
 #ifdef OSGGPUANIMATION_ASSIMP
-    options.otherFormats = assimp::readAsGlb;
+    options.otherFormats = assimp::readAsGlbApart;
 #endif
     std::error_code failure;
     for (const std::string& file : arguments.clips)

@@ -75,7 +75,9 @@ class AssimpScene
 public:
     explicit AssimpScene(const std::string& file)
     {
-        if (const Result<const aiScene*> read = assimp::readScene(_importer, file, {})) _scene = read.value();
+        gltf::Messages messages;
+        gltf::Report report(messages);
+        if (const Result<const aiScene*> read = assimp::readScene(_importer, file, {}, report)) _scene = read.value();
     }
 
     const aiScene* scene() const { return _scene; } ///< null: Assimp cannot read it

@@ -387,6 +387,22 @@ TEST_F(SceneConversionTest, weightsOfAllSumsAndOfNone)
 }
 
 /// Keys that go back in time are left out; two of one time are a jump.
+TEST_F(SceneConversionTest, aMessageNamesNodesThatAnimationsCannotTellApart)
+{
+    aiNode* const second = new aiNode("Flag");
+    second->mParent = flag;
+    flag->mNumChildren = 1;
+    flag->mChildren = arrayOf({second});
+    EXPECT_TRUE(glb());
+    EXPECT_TRUE(messages.warnings.empty()); // nothing names them
+    animate({slide("Wave", 1, {aiVectorKey(0, {0, 0, 0}), aiVectorKey(1, {0, 1, 0})})});
+    EXPECT_TRUE(glb());
+    ASSERT_EQ(messages.warnings.size(), 1u);
+    EXPECT_EQ(messages.warnings[0],
+              "node \"Flag\": several have the name, and animations name it; the first one moves. "
+              "Give them names of their own");
+}
+
 TEST_F(SceneConversionTest, keysAscend)
 {
     animate({slide("Jump", 1.0, {{0, {0, 0, 0}}, {2, {0, 2, 0}}, {1, {0, 9, 0}}, {2, {0, 6, 0}}, {4, {0, 8, 0}}})});

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 # The programs and libraries below FOLDER name no folder of BUILD (said by READELF), and the loader finds all they need.
-file(GLOB_RECURSE files ${FOLDER}/*.so ${FOLDER}/*.so.* ${FOLDER}/bin/* ${FOLDER}/usr/bin/*)
+file(GLOB_RECURSE files ${FOLDER}/*.so ${FOLDER}/*.so.* ${FOLDER}/bin/* ${FOLDER}/usr/bin/*
+     ${FOLDER}/osggpuanim_assimp)
 list(LENGTH files count)
 if(count LESS 8)
     message(FATAL_ERROR "${count} programs and libraries in ${FOLDER}, where there should be 8 at least")

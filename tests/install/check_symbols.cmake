@@ -7,7 +7,7 @@ set(third_parties "8tinygltf|8nlohmann|3CLI|5draco|3glm|stbi|stb_")
 set(function_types "^_ZT[IS]P?F")
 set(ours "^_ZN[KVRO]*15osgGpuAnimation|${function_types}")
 
-file(GLOB_RECURSE files ${FOLDER}/*.so ${FOLDER}/*.so.*.* ${FOLDER}/bin/*)
+file(GLOB_RECURSE files ${FOLDER}/*.so ${FOLDER}/*.so.*.* ${FOLDER}/bin/* ${FOLDER}/osggpuanim_assimp)
 list(LENGTH files count)
 if(count LESS 8)
     message(FATAL_ERROR "${count} programs and libraries in ${FOLDER}, where there should be 8 at least")

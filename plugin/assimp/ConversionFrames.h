@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <string>
+
+namespace osgGpuAnimation::assimp
+{
+
+// What the helper program writes to its standard output: frames of a kind, the number of bytes behind it (64 bits of
+// this machine), and these bytes. The last one is Glb or Error. Its arguments: the limits of seconds and of bytes of
+// memory, allowOutsideFiles (0 or 1), maxDecodedBytes, maxNodeDepth, and the file.
+
+enum class FrameKind : char
+{
+    Warning = 'w', ///< any number, in front of the last frame
+    Note = 'n',    ///< likewise
+    Error = 'e',   ///< why there is no GLB
+    Glb = 'g'
+};
+
+constexpr std::size_t frameHeaderBytes = 1 + sizeof(std::uint64_t);
+constexpr int exitOutOfMemory = 3; ///< the exit status of the helper where its limit of memory is reached
+
+inline std::string frameHeader(FrameKind kind, std::uint64_t bytes)
+{
+    std::string header(frameHeaderBytes, static_cast<char>(kind));
+    std::memcpy(&header[1], &bytes, sizeof(bytes));
+    return header;
+}
+
+} // namespace osgGpuAnimation::assimp

@@ -1,0 +1,499 @@
+// SPDX-License-Identifier: MIT
+#include "assimp/FbxConversion.h"
+
+#include "assimp/NodeMarks.h"
+#include "assimp/SampledTrack.h"
+
+#include <assimp/scene.h>
+
+#include <glm/ext/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace osgGpuAnimation::assimp
+{
+
+namespace
+{
+
+constexpr double rotationTolerance = 1e-3, relativeTolerance = 1e-4;
+
+aiMatrix4x4 toAssimp(const glm::dmat4& matrix)
+{
+    aiMatrix4x4 made;
+    for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column)
+            made[static_cast<unsigned int>(row)][column] = static_cast<float>(matrix[column][row]);
+    return made;
+}
+
+glm::dmat4 matrixOf(const fbx::Placement& placement)
+{
+    return glm::translate(glm::dmat4(1.0), placement.translation) * glm::mat4_cast(placement.rotation) *
+           glm::scale(glm::dmat4(1.0), placement.scale);
+}
+
+aiVector3D toAssimp(const glm::dvec3& vector)
+{
+    return {static_cast<float>(vector.x), static_cast<float>(vector.y), static_cast<float>(vector.z)};
+}
+
+bool isOne(const glm::dvec3& scale)
+{
+    constexpr double same = 1e-6;
+    return glm::length(scale - glm::dvec3(1.0)) < same;
+}
+
+glm::dvec3 inverseScale(const glm::dvec3& scale)
+{
+    glm::dvec3 inverse(1.0);
+    for (int axis = 0; axis < 3; ++axis)
+        if (scale[axis] != 0.0) inverse[axis] = 1.0 / scale[axis];
+    return inverse;
+}
+
+double greatest(const std::vector<double>& numbers)
+{
+    double max = 0.0;
+    for (const double each : numbers)
+        max = std::max(max, std::abs(each));
+    return max;
+}
+
+void replaceChild(aiNode& parent, const aiNode& child, aiNode& with)
+{
+    std::replace(parent.mChildren, parent.mChildren + parent.mNumChildren, const_cast<aiNode*>(&child), &with);
+    with.mParent = &parent;
+}
+
+void addChild(aiNode& parent, aiNode& child)
+{
+    aiNode** const children = new aiNode*[parent.mNumChildren + 1];
+    std::copy(parent.mChildren, parent.mChildren + parent.mNumChildren, children);
+    children[parent.mNumChildren++] = &child;
+    delete[] parent.mChildren;
+    parent.mChildren = children;
+    child.mParent = &parent;
+}
+
+template <class T>
+T** newArray(const std::vector<T*>& elements, unsigned int& count)
+{
+    count = static_cast<unsigned int>(elements.size());
+    T** const array = elements.empty() ? nullptr : new T*[elements.size()];
+    std::copy(elements.begin(), elements.end(), array);
+    return array;
+}
+
+const fbx::ModelTracks* tracksOf(const fbx::Take& take, int model)
+{
+    if (model < 0) return nullptr;
+    const auto number = static_cast<std::size_t>(model);
+    const auto found = std::lower_bound(take.models.begin(), take.models.end(), number,
+                                        [](const fbx::ModelTracks& each, std::size_t to) { return each.model < to; });
+    return found != take.models.end() && found->model == number ? &*found : nullptr;
+}
+
+using VectorKeys = std::vector<std::pair<double, glm::dvec3>>;
+
+/// How a node moves in a take: a model, or the node of the parent's inverse scale above it, which has its translation.
+struct Motion
+{
+    const fbx::Model& model;
+    const fbx::ModelTracks* tracks; ///< null: it rests
+    double metres;
+    bool hasTranslation = true;
+    const fbx::Model* parent = nullptr; ///< whose inverse scale is all that the node has besides; null: a model's node
+    const fbx::ModelTracks* parentTracks = nullptr;
+
+    fbx::Placement placement(double time, bool before) const
+    {
+        return tracks ? model.placement(tracks->translation.at(time, before), tracks->rotation.at(time, before),
+                                        tracks->scale.at(time, before))
+                      : model.rest();
+    }
+
+    VectorKeys translations(const fbx::Take& take) const
+    {
+        std::vector<double> times;
+        if (tracks && hasTranslation) tracks->translation.appendTimes(times);
+        if (tracks && hasTranslation && model.hasPivots())
+        {
+            tracks->rotation.appendTimes(times);
+            tracks->scale.appendTimes(times);
+        }
+        return vectors(std::move(times), take,
+                       [this](double time, bool before)
+                       { return hasTranslation ? metres * placement(time, before).translation : glm::dvec3(0.0); });
+    }
+
+    VectorKeys scales(const fbx::Take& take) const
+    {
+        std::vector<double> times;
+        if (tracks && !parent) tracks->scale.appendTimes(times);
+        if (parentTracks) parentTracks->scale.appendTimes(times);
+        return vectors(std::move(times), take,
+                       [this](double time, bool before)
+                       {
+                           if (!parent) return placement(time, before).scale;
+                           return inverseScale(parentTracks ? parentTracks->scale.at(time, before) : parent->scale);
+                       });
+    }
+
+    std::vector<std::pair<double, glm::dquat>> rotations(const fbx::Take& take) const
+    {
+        std::vector<double> times;
+        if (tracks && !parent) tracks->rotation.appendTimes(times);
+        const auto rotation = [this](double time, bool before)
+        { return parent ? glm::dquat(1.0, 0.0, 0.0, 0.0) : placement(time, before).rotation; };
+        const auto slerped = [](const glm::dquat& a, const glm::dquat& b, double share)
+        { return glm::slerp(a, b, share); };
+        const auto angle = [](const glm::dquat& a, const glm::dquat& b)
+        {
+            const glm::dquat difference = glm::conjugate(a) * b; // the acos of the product is inexact near 1
+            return 2.0 * std::asin(std::min(1.0, glm::length(glm::dvec3(difference.x, difference.y, difference.z))));
+        };
+        return sampledTrack(std::move(times), take.begin, take.end, rotation, slerped, angle, rotationTolerance);
+    }
+
+    template <class Function>
+    static VectorKeys vectors(std::vector<double> times, const fbx::Take& take, const Function& function)
+    {
+        double size = glm::length(function(take.begin, false));
+        for (const double time : times)
+            size = std::max(size, glm::length(function(time, false)));
+        return sampledTrack(
+            std::move(times), take.begin, take.end, function,
+            [](const glm::dvec3& a, const glm::dvec3& b, double share) { return glm::mix(a, b, share); },
+            [](const glm::dvec3& a, const glm::dvec3& b) { return glm::length(a - b); }, relativeTolerance * size);
+    }
+};
+
+aiVectorKey* vectorKeys(const VectorKeys& keys, unsigned int& count)
+{
+    count = static_cast<unsigned int>(keys.size());
+    aiVectorKey* const array = new aiVectorKey[keys.size()];
+    for (std::size_t i = 0; i < keys.size(); ++i)
+        array[i] = aiVectorKey(keys[i].first, toAssimp(keys[i].second));
+    return array;
+}
+
+class FbxCompletion
+{
+public:
+    FbxCompletion(aiScene& scene, const fbx::Scene& fbx, gltf::Report& report)
+        : _scene(scene), _fbx(fbx), _report(report), _metres(fbx.metresPerUnit)
+    {
+        for (std::size_t model = 0; model < fbx.models.size(); ++model)
+            _models.emplace(fbx.models[model].uniqueName, model);
+    }
+
+    void complete()
+    {
+        for (const std::string& warning : _fbx.warnings)
+            _report.warn(warning);
+        findCompensated();
+        placeNodes();
+        writeTakes();
+    }
+
+private:
+    void findCompensated();
+    void placeNodes();
+    void place(aiNode& node, const fbx::Model& model, bool isBelowHidden);
+    void moveMeshes(aiNode& node, const fbx::Model& model);
+    void setBones(aiMesh& mesh, const fbx::Model& model, const glm::dmat4& geometric) const;
+    void setShapes(aiMesh& mesh, const fbx::Model& model);
+
+    void writeTakes();
+    void addModel(const fbx::Take& take, std::size_t model, std::vector<aiNodeAnim*>& channels) const;
+    aiNodeAnim* transforms(const std::string& node, const fbx::Take& take, std::size_t model,
+                           bool isScaleOfParent) const;
+    aiMeshMorphAnim* weights(const fbx::Take& take, std::size_t model) const;
+
+    aiScene& _scene;
+    const fbx::Scene& _fbx;
+    gltf::Report& _report;
+    double _metres; ///< a unit of the file
+    std::map<std::string, std::size_t> _models;
+    std::set<std::size_t> _compensated;          ///< models with a node of the parent's inverse scale above
+    std::map<std::size_t, std::string> _morphed; ///< the nodes of the meshes with shapes, by model
+    std::set<const aiMesh*> _completed;
+};
+
+std::string compensationName(const fbx::Model& model)
+{
+    return model.uniqueName + "_ScaleCompensation";
+}
+
+/// A model with Segment Scale Compensate needs another node where the scale of its parent is not always 1.
+void FbxCompletion::findCompensated()
+{
+    for (std::size_t number = 0; number < _fbx.models.size(); ++number)
+    {
+        const fbx::Model& model = _fbx.models[number];
+        if (!model.compensatesScale || model.parent < 0) continue;
+        bool isScaled = !isOne(_fbx.models[static_cast<std::size_t>(model.parent)].scale);
+        for (const fbx::Take& take : _fbx.takes)
+            if (const fbx::ModelTracks* const tracks = tracksOf(take, model.parent))
+            {
+                std::vector<double> times{take.begin};
+                tracks->scale.appendTimes(times);
+                for (const double time : times)
+                    isScaled = isScaled || !isOne(tracks->scale.at(time));
+            }
+        if (isScaled) _compensated.insert(number);
+    }
+}
+
+void FbxCompletion::placeNodes()
+{
+    struct Open
+    {
+        aiNode* node;
+        bool isBelowHidden;
+    };
+    std::vector<Open> open{{_scene.mRootNode, false}};
+    while (!open.empty())
+    {
+        const Open next = open.back();
+        open.pop_back();
+        const std::vector<aiNode*> children(next.node->mChildren, next.node->mChildren + next.node->mNumChildren);
+        const auto found = _models.find(next.node->mName.C_Str());
+        const bool isModel = found != _models.end() && next.node != _scene.mRootNode;
+        const bool isHidden = isModel && _fbx.models[found->second].isHidden;
+        if (isModel) place(*next.node, _fbx.models[found->second], next.isBelowHidden);
+        if (!isModel && next.node != _scene.mRootNode)
+            _report.warn("node " + gltf::quoted(std::string(next.node->mName.C_Str())) +
+                         ": Assimp gives it a name that is not in the file; pivots and takes do not reach it");
+        for (aiNode* const child : children)
+            open.push_back({child, next.isBelowHidden || isHidden});
+    }
+}
+
+void FbxCompletion::place(aiNode& node, const fbx::Model& model, bool isBelowHidden)
+{
+    fbx::Placement rest = model.rest();
+    rest.translation *= _metres;
+    mark(node, {model.name, model.isHidden && !isBelowHidden});
+    moveMeshes(node, model);
+    if (_compensated.count(_models.at(model.uniqueName)) > 0)
+    {
+        aiNode* const above = new aiNode(compensationName(model));
+        mark(*above, {model.name + "_ScaleCompensation", false});
+        fbx::Placement compensation;
+        compensation.translation = rest.translation;
+        compensation.scale = inverseScale(_fbx.models[static_cast<std::size_t>(model.parent)].scale);
+        above->mTransformation = toAssimp(matrixOf(compensation));
+        replaceChild(*node.mParent, node, *above);
+        addChild(*above, node);
+        rest.translation = glm::dvec3(0.0);
+    }
+    node.mTransformation = toAssimp(matrixOf(rest));
+}
+
+void FbxCompletion::moveMeshes(aiNode& node, const fbx::Model& model)
+{
+    glm::dmat4 geometric = model.geometric;
+    geometric[3] *= glm::dvec4(_metres, _metres, _metres, 1.0);
+    const bool isMoved = geometric != glm::dmat4(1.0);
+    bool hasBones = false;
+    for (unsigned int i = 0; i < node.mNumMeshes; ++i)
+    {
+        aiMesh& mesh = *_scene.mMeshes[node.mMeshes[i]];
+        hasBones = hasBones || mesh.mNumBones > 0;
+        if (!_completed.insert(&mesh).second) continue;
+        setShapes(mesh, model);
+        setBones(mesh, model, geometric);
+    }
+    aiNode* drawn = &node;
+    if (isMoved && node.mNumMeshes > 0 && !hasBones)
+    {
+        drawn = new aiNode(model.uniqueName + "_Geometry");
+        mark(*drawn, {model.name, false});
+        drawn->mTransformation = toAssimp(geometric);
+        std::swap(drawn->mMeshes, node.mMeshes);
+        std::swap(drawn->mNumMeshes, node.mNumMeshes);
+        addChild(node, *drawn);
+    }
+    if (!model.shapes.empty()) _morphed[_models.at(model.uniqueName)] = drawn->mName.C_Str();
+}
+
+/// Assimp 5.4 has other offset matrices than 5.2 and 6.0.
+void FbxCompletion::setBones(aiMesh& mesh, const fbx::Model& model, const glm::dmat4& geometric) const
+{
+    for (unsigned int i = 0; i < mesh.mNumBones; ++i)
+        for (const fbx::Binding& binding : model.bindings)
+        {
+            if (mesh.mBones[i]->mName != aiString(_fbx.models[binding.bone].uniqueName)) continue;
+            glm::dmat4 meshToBone = binding.meshToBone;
+            meshToBone[3] *= glm::dvec4(_metres, _metres, _metres, 1.0);
+            mesh.mBones[i]->mOffsetMatrix = toAssimp(meshToBone * geometric);
+            break;
+        }
+}
+
+/// Assimp's names are those of the channels, from 5.4 on with a point and the name of the target, and then in no order.
+/// A channel with several targets comes once for each.
+void FbxCompletion::setShapes(aiMesh& mesh, const fbx::Model& model)
+{
+    std::map<std::size_t, std::size_t> seen;
+    for (unsigned int i = 0; i < mesh.mNumAnimMeshes && i < model.shapes.size(); ++i)
+    {
+        const fbx::ShapeChannel& channel = _fbx.channels[model.shapes[i]];
+        const std::size_t target = seen[model.shapes[i]]++;
+        aiAnimMesh** const end = mesh.mAnimMeshes + mesh.mNumAnimMeshes;
+        for (const std::string& name : {channel.uniqueName + '.' + channel.targetNames[target], channel.uniqueName})
+        {
+            const auto isNamed = [&](const aiAnimMesh* each) { return each->mName == aiString(name); };
+            aiAnimMesh** const own = std::find_if(mesh.mAnimMeshes + i, end, isNamed);
+            if (own == end) continue;
+            std::rotate(mesh.mAnimMeshes + i, own, own + 1);
+            break;
+        }
+        mesh.mAnimMeshes[i]->mWeight = static_cast<float>(channel.weight(target, channel.percent));
+        mesh.mAnimMeshes[i]->mName = channel.name;
+    }
+    if (mesh.mNumAnimMeshes != model.shapes.size())
+        _report.warn("node " + gltf::quoted(model.name) + ": expected " + std::to_string(model.shapes.size()) +
+                     " shapes, found " + std::to_string(mesh.mNumAnimMeshes) +
+                     " in its mesh; their weights may be wrong");
+}
+
+void FbxCompletion::writeTakes()
+{
+    std::vector<aiAnimation*> animations;
+    for (const fbx::Take& take : _fbx.takes)
+    {
+        std::vector<aiNodeAnim*> channels;
+        std::vector<aiMeshMorphAnim*> morphs;
+        for (std::size_t model = 0; model < _fbx.models.size(); ++model)
+            addModel(take, model, channels);
+        for (const auto& [model, node] : _morphed)
+            if (aiMeshMorphAnim* const made = weights(take, model)) morphs.push_back(made);
+        aiAnimation* const animation = new aiAnimation;
+        animation->mName = take.name;
+        animation->mTicksPerSecond = 1.0;
+        animation->mDuration = take.end - take.begin;
+        animation->mChannels = newArray(channels, animation->mNumChannels);
+        animation->mMorphMeshChannels = newArray(morphs, animation->mNumMorphMeshChannels);
+        animations.push_back(animation);
+    }
+    _scene.mAnimations = newArray(animations, _scene.mNumAnimations);
+}
+
+void FbxCompletion::addModel(const fbx::Take& take, std::size_t model, std::vector<aiNodeAnim*>& channels) const
+{
+    const bool isCompensated = _compensated.count(model) > 0;
+    const bool isAnimated = tracksOf(take, static_cast<int>(model));
+    const bool isParentAnimated = isCompensated && tracksOf(take, _fbx.models[model].parent);
+    if (isAnimated) channels.push_back(transforms(_fbx.models[model].uniqueName, take, model, false));
+    if (isCompensated && (isAnimated || isParentAnimated))
+        channels.push_back(transforms(compensationName(_fbx.models[model]), take, model, true));
+}
+
+aiNodeAnim* FbxCompletion::transforms(const std::string& node, const fbx::Take& take, std::size_t number,
+                                      bool isScaleOfParent) const
+{
+    Motion motion{_fbx.models[number], tracksOf(take, static_cast<int>(number)), _metres};
+    motion.hasTranslation = isScaleOfParent || _compensated.count(number) == 0;
+    if (isScaleOfParent)
+    {
+        motion.parent = &_fbx.models[static_cast<std::size_t>(motion.model.parent)];
+        motion.parentTracks = tracksOf(take, motion.model.parent);
+    }
+    aiNodeAnim* const made = new aiNodeAnim;
+    made->mNodeName = node;
+    made->mPositionKeys = vectorKeys(motion.translations(take), made->mNumPositionKeys);
+    made->mScalingKeys = vectorKeys(motion.scales(take), made->mNumScalingKeys);
+    const auto rotations = motion.rotations(take);
+    made->mNumRotationKeys = static_cast<unsigned int>(rotations.size());
+    made->mRotationKeys = new aiQuatKey[rotations.size()];
+    for (std::size_t i = 0; i < rotations.size(); ++i)
+    {
+        const glm::dquat& each = rotations[i].second;
+        made->mRotationKeys[i] =
+            aiQuatKey(rotations[i].first, aiQuaternion(static_cast<float>(each.w), static_cast<float>(each.x),
+                                                       static_cast<float>(each.y), static_cast<float>(each.z)));
+    }
+    return made;
+}
+
+aiMeshMorphAnim* FbxCompletion::weights(const fbx::Take& take, std::size_t number) const
+{
+    const fbx::Model& model = _fbx.models[number];
+    std::map<std::size_t, const fbx::Curve*> curves;
+    std::vector<double> times;
+    for (const fbx::ShapeTrack& track : take.shapes)
+        if (std::count(model.shapes.begin(), model.shapes.end(), track.channel) > 0)
+        {
+            curves[track.channel] = &track.percent;
+            track.percent.appendTimes(times);
+        }
+    if (curves.empty()) return nullptr;
+    const auto weightsAt = [&](double time, bool before)
+    {
+        std::vector<double> values;
+        std::map<std::size_t, std::size_t> seen;
+        for (const std::size_t channel : model.shapes)
+        {
+            const fbx::ShapeChannel& shape = _fbx.channels[channel];
+            const auto curve = curves.find(channel);
+            values.push_back(
+                shape.weight(seen[channel]++, curve == curves.end() ? shape.percent : curve->second->at(time, before)));
+        }
+        return values;
+    };
+    const auto mixed = [](const std::vector<double>& a, const std::vector<double>& b, double share)
+    {
+        std::vector<double> values(a);
+        for (std::size_t i = 0; i < values.size(); ++i)
+            values[i] += share * (b[i] - a[i]);
+        return values;
+    };
+    const auto apart = [](const std::vector<double>& a, const std::vector<double>& b)
+    {
+        double distance = 0.0;
+        for (std::size_t i = 0; i < a.size(); ++i)
+            distance = std::max(distance, std::abs(a[i] - b[i]));
+        return distance;
+    };
+    double size = greatest(weightsAt(take.begin, false));
+    for (const double time : times)
+        size = std::max(size, greatest(weightsAt(time, false)));
+    const auto keys = sampledTrack(times, take.begin, take.end, weightsAt, mixed, apart, relativeTolerance * size);
+    aiMeshMorphAnim* const made = new aiMeshMorphAnim;
+    made->mName = _morphed.at(number) + "*0";
+    made->mNumKeys = static_cast<unsigned int>(keys.size());
+    made->mKeys = new aiMeshMorphKey[keys.size()];
+    for (std::size_t i = 0; i < keys.size(); ++i)
+    {
+        aiMeshMorphKey& key = made->mKeys[i];
+        key.mTime = keys[i].first;
+        key.mNumValuesAndWeights = static_cast<unsigned int>(keys[i].second.size());
+        key.mValues = new unsigned int[keys[i].second.size()];
+        key.mWeights = new double[keys[i].second.size()];
+        for (unsigned int target = 0; target < key.mNumValuesAndWeights; ++target)
+        {
+            key.mValues[target] = target;
+            key.mWeights[target] = keys[i].second[target];
+        }
+    }
+    return made;
+}
+
+} // namespace
+
+void completeFbx(aiScene& scene, const fbx::Scene& fbx, gltf::Report& report)
+{
+    if (scene.mRootNode) FbxCompletion(scene, fbx, report).complete();
+}
+
+} // namespace osgGpuAnimation::assimp

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#include "assimp/AssimpFile.h"
+#include "assimp/ConversionFrames.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <new>
+
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <csignal>
+
+using namespace osgGpuAnimation;
+
+namespace
+{
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool reservesAddressSpace = true; // of terabytes, for a sanitizer
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+constexpr bool reservesAddressSpace = true;
+#else
+constexpr bool reservesAddressSpace = false;
+#endif
+#else
+constexpr bool reservesAddressSpace = false;
+#endif
+
+void limit(int resource, rlim_t most)
+{
+    rlimit both{most, most};
+    rlimit current{};
+    if (getrlimit(static_cast<__rlimit_resource>(resource), &current) == 0 && current.rlim_max < most)
+        both.rlim_cur = both.rlim_max = current.rlim_max;
+    setrlimit(static_cast<__rlimit_resource>(resource), &both);
+}
+
+[[noreturn]] void outOfMemory()
+{
+    _exit(assimp::exitOutOfMemory);
+}
+
+bool write(const std::string& bytes)
+{
+    return std::fwrite(bytes.data(), 1, bytes.size(), stdout) == bytes.size();
+}
+
+bool writeFrame(assimp::FrameKind kind, const std::string& content)
+{
+    return write(assimp::frameHeader(kind, content.size())) && write(content);
+}
+
+} // namespace
+
+/// Converts a file to GLB for readAsGlbApart(), which starts it. See ConversionFrames.h.
+int main(int count, char** arguments)
+{
+    if (count != 7)
+    {
+        std::fprintf(stderr, "osggpuanim_assimp converts a file for the plugin osgdb_assimp, which starts it.\n"
+                             "To convert a file yourself: osggpuanim convert FILE -o FILE.glb\n");
+        return 2;
+    }
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+#ifdef SYS_close_range
+    syscall(SYS_close_range, STDERR_FILENO + 1, ~0u, 0); // files and devices of the host
+#endif
+    limit(RLIMIT_CORE, 0);
+    limit(RLIMIT_FSIZE, 0);
+    limit(RLIMIT_CPU, std::strtoull(arguments[1], nullptr, 10));
+    if (!reservesAddressSpace) limit(RLIMIT_AS, std::strtoull(arguments[2], nullptr, 10));
+    std::set_new_handler(outOfMemory);
+
+    gltf::ImportOptions options;
+    options.allowOutsideFiles = arguments[3][0] == '1';
+    options.maxDecodedBytes = std::strtoull(arguments[4], nullptr, 10);
+    options.maxNodeDepth = std::strtoull(arguments[5], nullptr, 10);
+    gltf::Messages messages;
+    gltf::Report report(messages);
+    const Result<std::string> glb = assimp::readAsGlb(arguments[6], options, report);
+    bool isWritten = true;
+    for (const std::string& each : messages.warnings)
+        isWritten = isWritten && writeFrame(assimp::FrameKind::Warning, each);
+    for (const std::string& each : messages.notes)
+        isWritten = isWritten && writeFrame(assimp::FrameKind::Note, each);
+    isWritten = isWritten && (glb ? writeFrame(assimp::FrameKind::Glb, glb.value())
+                                  : writeFrame(assimp::FrameKind::Error, glb.error().message));
+    isWritten = std::fflush(stdout) == 0 && isWritten;
+    _exit(isWritten ? 0 : 1); // what the libraries would tidy up belongs to no one
+}

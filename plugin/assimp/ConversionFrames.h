@@ -23,6 +23,19 @@ enum class FrameKind : char
 constexpr std::size_t frameHeaderBytes = 1 + sizeof(std::uint64_t);
 constexpr int exitOutOfMemory = 3; ///< the exit status of the helper where its limit of memory is reached
 
+// The limit of memory is one of addresses, of which a sanitizer reserves terabytes.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool reservesAddressSpace = true;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+constexpr bool reservesAddressSpace = true;
+#else
+constexpr bool reservesAddressSpace = false;
+#endif
+#else
+constexpr bool reservesAddressSpace = false;
+#endif
+
 inline std::string frameHeader(FrameKind kind, std::uint64_t bytes)
 {
     std::string header(frameHeaderBytes, static_cast<char>(kind));

@@ -18,18 +18,6 @@ using namespace osgGpuAnimation;
 namespace
 {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool reservesAddressSpace = true; // of terabytes, for a sanitizer
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-constexpr bool reservesAddressSpace = true;
-#else
-constexpr bool reservesAddressSpace = false;
-#endif
-#else
-constexpr bool reservesAddressSpace = false;
-#endif
-
 void limit(int resource, rlim_t most)
 {
     rlimit both{most, most};
@@ -72,7 +60,7 @@ int main(int count, char** arguments)
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_FSIZE, 0);
     limit(RLIMIT_CPU, std::strtoull(arguments[1], nullptr, 10));
-    if (!reservesAddressSpace) limit(RLIMIT_AS, std::strtoull(arguments[2], nullptr, 10));
+    if (!assimp::reservesAddressSpace) limit(RLIMIT_AS, std::strtoull(arguments[2], nullptr, 10));
     std::set_new_handler(outOfMemory);
 
     gltf::ImportOptions options;

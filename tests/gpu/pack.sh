@@ -64,7 +64,7 @@ printf '%s\n' "${gl_tests[@]}" >"$pack/tests"
 copy "${gl_tests[@]/#/$build/bin/}" "$build"/bin/osggpuanim{,_benchmark} project/build/bin
 ours=("$build"/lib/osgPlugins-*)
 copy "$build"/lib/*.so* project/build/lib
-copy "${ours[0]}"/*.so "project/build/lib/${ours[0]##*/}"
+copy "${ours[0]}"/{*.so,osggpuanim_assimp} "project/build/lib/${ours[0]##*/}"
 copy "$root"/scenes/*.glb "$root/scenes/directing" project/scenes
 copy "$root"/tests/tool/check_{oracle,looks}.py project/tests/tool
 copy "$shared"/{assets,oracle,bad_gltf} shared

@@ -28,7 +28,8 @@ osg::ref_ptr<osg::Program> captureProgram()
     osg::ref_ptr<osg::Program> program = new osg::Program;
     program->setName("osggpuanim capture");
     program->addShader(skinShader());
-    program->addShader(new osg::Shader(osg::Shader::VERTEX, std::string(shaders::version_glsl) + shaders::capture_vert));
+    program->addShader(
+        new osg::Shader(osg::Shader::VERTEX, std::string(shaders::version_glsl) + shaders::capture_vert));
     bindSkinAttributes(*program);
     program->addTransformFeedBackVarying("capturedPosition");
     program->setTransformFeedBackMode(GL_INTERLEAVED_ATTRIBS);

@@ -54,7 +54,7 @@ mkdir -p "$project"/{scenes/directing,tests/{gpu,tool},build/{bin,lib/osgPlugins
 mkdir -p "$folder"/parent/shared/{assets,oracle,bad_gltf,looks/{models,pictures}}
 cp "$here/../setup.sh" "$project/tests"
 cp "$here"/{pack,go}.sh "$project/tests/gpu"
-touch "$project"/{scenes/Wanderer.glb,tests/tool/check_{oracle,looks}.py,build/lib/{libours,osgPlugins-0/osgdb_ours}.so}
+touch "$project"/{scenes/Wanderer.glb,tests/tool/check_{oracle,looks}.py,build/lib/{libours.so,osgPlugins-0/{osgdb_ours.so,osggpuanim_assimp}}}
 touch "$folder/parent/shared/looks/compare.py"
 for program in "${programs[@]}"; do
     install -m 755 /dev/null "$project/build/bin/$program"
@@ -64,7 +64,7 @@ expect "CMakeCache.txt is missing" "$project/tests/gpu/pack.sh"
 printf '%s\n' "CMAKE_HOME_DIRECTORY:INTERNAL=$project" "OSGGPUANIMATION_SHARED_ASSETS:PATH=$folder/parent/shared" \
     >"$project/build/CMakeCache.txt"
 expect "ldd cannot read $project/build/bin/osggpuanim" "$project/tests/gpu/pack.sh"
-for part in "${programs[@]/#/project/build/bin/}" project/build/lib/osgPlugins-0/osgdb_ours.so \
+for part in "${programs[@]/#/project/build/bin/}" project/build/lib/osgPlugins-0/{osgdb_ours.so,osggpuanim_assimp} \
     project/scenes/{Wanderer.glb,directing} project/tests/tool/check_{oracle,looks}.py \
     shared/{assets,oracle,bad_gltf,looks/{models,pictures,compare.py}}; do
     missing=$part
@@ -80,6 +80,7 @@ cp "$here/go.sh" "$other"
 expect "expected tests, poses, looks or bench, found pictures" "$other/go.sh" pictures
 expect "there is no $other/pack.tar.xz" "$other/go.sh" tests
 cp -r "$folder/parent" "$folder/contents"
+mkdir "$folder/contents/libraries"
 printf '%s\n' "$folder"/linked/{project,shared} >"$folder/contents/paths"
 printf '%s\n' "${gl_tests[@]}" >"$folder/contents/tests"
 printf '%s\n' "${parts[@]}" >"$folder/contents/parts"

@@ -107,7 +107,8 @@ protected:
     {
         osg::ref_ptr<osg::Program> program = new osg::Program;
         program->addShader(skinShader());
-        program->addShader(new osg::Shader(osg::Shader::VERTEX, std::string(shaders::version_glsl) + shaders::capture_vert));
+        program->addShader(
+            new osg::Shader(osg::Shader::VERTEX, std::string(shaders::version_glsl) + shaders::capture_vert));
         bindSkinAttributes(*program);
         program->addTransformFeedBackVarying("capturedPosition");
         program->addTransformFeedBackVarying("capturedNormal");

@@ -27,6 +27,7 @@ struct RetargetOptions
     /// The joint of the set that carries the body. Empty: a joint called hips or pelvis, else the first joint below
     /// which the skeleton branches.
     std::string hips{};
+    /// Whether clips are taken as they are or retargeted.
     ClipMatch match = ClipMatch::Automatic;
 };
 

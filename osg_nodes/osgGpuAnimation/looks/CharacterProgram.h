@@ -56,7 +56,8 @@ osg::ref_ptr<osg::Shader> materialShader();
 ///
 /// The first gives the light that a surface at viewPosition sends to the eye: with the shader define MATERIAL_PBR of
 /// applyPbrMaterial() linear radiance, else the colour of the fixed pipeline. The kit's own program reads the modes of
-/// the state; another program has shader defines for them. isCore: for a core profile, with a headlight and without fog.
+/// the state; another program has shader defines for them. isCore: for a core profile, with a headlight and without
+/// fog.
 ///
 /// | define            | value                                                                   | without it |
 /// | ----------------- | ----------------------------------------------------------------------- | ---------- |

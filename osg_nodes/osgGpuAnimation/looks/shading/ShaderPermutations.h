@@ -59,9 +59,9 @@ struct ShaderKey
 
     auto key() const
     {
-        return std::tie(isCore, isDepthOnly, isAlphaNeeded, isLit, hasFlatNormals, hasSpecular, isTextured, hasTextureMatrix,
-                        hasClipPlanes, lights, pointLights, punctualLights, shadowMaps, hasShadowBias, hasShadowSplits,
-                        isEncoded, fog, hooks);
+        return std::tie(isCore, isDepthOnly, isAlphaNeeded, isLit, hasFlatNormals, hasSpecular, isTextured,
+                        hasTextureMatrix, hasClipPlanes, lights, pointLights, punctualLights, shadowMaps, hasShadowBias,
+                        hasShadowSplits, isEncoded, fog, hooks);
     }
     bool operator<(const ShaderKey& other) const { return key() < other.key(); }
 };

@@ -15,7 +15,7 @@ namespace osgGpuAnimation::assimp
 enum class FrameKind : char
 {
     Warning = 'w', ///< any number, in front of the last frame
-    Note = 'n',    ///< likewise
+    Note = 'n',    ///< any number, before the last frame
     Error = 'e',   ///< why there is no GLB
     Glb = 'g'
 };

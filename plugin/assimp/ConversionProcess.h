@@ -26,7 +26,7 @@ struct ConversionHelper
 };
 
 /// readAsGlb() (see AssimpFile.h) in a process of its own: a file on which Assimp crashes, aborts or hangs, or that
-/// needs too much memory, is an error, and this process goes on. Starting the process costs some 30 ms.
+/// needs too much memory, is an error, and this process goes on. Starting the process costs some 15 ms.
 ///
 /// Errors: those of readAsGlb(); the helper is missing or cannot be started; it ended by a signal (the message quotes
 /// what it printed last), or reached a limit.

@@ -59,7 +59,7 @@ glm::dvec3 inverseScale(const glm::dvec3& scale)
     return inverse;
 }
 
-double greatest(const std::vector<double>& numbers)
+double maxMagnitude(const std::vector<double>& numbers)
 {
     double max = 0.0;
     for (const double each : numbers)
@@ -438,6 +438,8 @@ aiMeshMorphAnim* FbxCompletion::weights(const fbx::Take& take, std::size_t numbe
             track.percent.appendTimes(times);
         }
     if (curves.empty()) return nullptr;
+    std::sort(times.begin(), times.end()); // of one time for each of its curves
+    times.erase(std::unique(times.begin(), times.end()), times.end());
     const auto weightsAt = [&](double time, bool before)
     {
         std::vector<double> values;
@@ -465,9 +467,9 @@ aiMeshMorphAnim* FbxCompletion::weights(const fbx::Take& take, std::size_t numbe
             distance = std::max(distance, std::abs(a[i] - b[i]));
         return distance;
     };
-    double size = greatest(weightsAt(take.begin, false));
+    double size = maxMagnitude(weightsAt(take.begin, false));
     for (const double time : times)
-        size = std::max(size, greatest(weightsAt(time, false)));
+        size = std::max(size, maxMagnitude(weightsAt(time, false)));
     const auto keys = sampledTrack(times, take.begin, take.end, weightsAt, mixed, apart, relativeTolerance * size);
     aiMeshMorphAnim* const made = new aiMeshMorphAnim;
     made->mName = _morphed.at(number) + "*0";

@@ -187,8 +187,9 @@ TEST_F(PosePipelineCostGLTest, smallBatchesOfDeepSetsTakeThreeDraws)
         std::size_t entriesWorthADraw, draws;
     };
     std::size_t slot = 0;
-    for (const Case& each : {Case{deep, entries / (levels - 3) + 1, 3},
-                             Case{deep, (entries - 1) / (levels - 3), levels}, Case{flat, 1000000, flat->levelCount()}})
+    for (const Case& each :
+         {Case{deep, entries * levels / (8 * (levels - 3)) + 1, 3},
+          Case{deep, (entries * levels - 1) / (8 * (levels - 3)), levels}, Case{flat, 1000000, flat->levelCount()}})
     {
         pipeline->options().entriesWorthADraw = each.entriesWorthADraw;
         PoseBatch batch(each.set);

@@ -235,8 +235,8 @@ run_bench()
     begin bench
     try bench "$build/bin/osggpuanim_benchmark" "$unpacked/bench" \
         "$shared"/assets/{Fox/Fox,CesiumMan/CesiumMan,Knight/Knight}.glb "${options[@]}"
-    [ ! -f "$unpacked/bench/benchmark.json" ] || cp "$unpacked/bench/benchmark.json" "$out"
     end
+    [ ! -f "$unpacked/bench/benchmark.json" ] || cp "$unpacked/bench/benchmark.json" "$out"
     cat "$out/bench.log"
 }
 

@@ -15,8 +15,8 @@ packages_present3D=()
 
 # What a character must at least change, in pixels: the host's own picture, and half a second later its own. SUMO's clock
 # and indicators change up to 1,400.
-least_shown=1500 least_moved=3000
-least_part=60 # the lantern in fgviewer, which shows the character 170 pixels high; it has some 250
+min_shown=1500 min_moved=3000
+min_part=60 # the lantern in fgviewer, which shows the character 170 pixels high; it has some 250
 
 fail()
 {
@@ -101,7 +101,7 @@ also_flightgear()
     local part
     part=$(differing with.1 without.1)
     echo "the part has $part pixels"
-    [ "$part" -ge $least_part ] || verdict="the part is not hidden"
+    [ "$part" -ge $min_part ] || verdict="the part is not hidden"
 }
 
 write_present3D()
@@ -132,7 +132,7 @@ differing()
 }
 
 # photograph NAME [PICTURE]: starts the host that way, and takes the pictures NAME.1 and, half a second later, NAME.2: when
-# $least_shown pixels differ from PICTURE, else when the screen has kept still for two seconds.
+# $min_shown pixels differ from PICTURE, else when the screen has kept still for two seconds.
 photograph()
 {
     local name=$1 tenths quiet=0 program
@@ -144,7 +144,7 @@ photograph()
         kill -0 $program 2>/dev/null || { verdict="ended by itself, see $name.log"; return 1; }
         cp "$screen" "$name.2"
         if [ $# -eq 2 ]; then
-            [ "$(differing "$2" $name.2)" -lt $least_shown ] || break
+            [ "$(differing "$2" $name.2)" -lt $min_shown ] || break
         else
             if [ "$(differing $name.1 $name.2)" -lt 200 ]; then quiet=$((quiet + 1)); else quiet=0; fi
             [ $quiet -lt 4 ] || [ $tenths -lt 50 ] || break
@@ -163,9 +163,9 @@ photograph()
 compare()
 {
     shown=$(differing bare.1 full.1) moved=$(differing full.1 full.2)
-    if [ "$shown" -lt $least_shown ]; then
+    if [ "$shown" -lt $min_shown ]; then
         verdict="no character"
-    elif [ "$moved" -lt $least_moved ]; then
+    elif [ "$moved" -lt $min_moved ]; then
         verdict="the character does not move"
     elif declare -F "also_$host" >/dev/null; then
         "also_$host"

@@ -52,6 +52,7 @@ std::size_t correctionsOf(const AnimationSet& set)
 }
 
 constexpr std::size_t separateDraws = 3;
+constexpr std::size_t measuredLevels = 8; ///< of entriesWorthADraw(); an entry of the separate form walks to the root
 
 /// Measured with sets of 50 joints in 8 and 16 levels. NVIDIA H200: separate 73 and 75 µs and 16 ns a joint, fused 200
 /// and 330 µs and 7 ns. llvmpipe: 9 µs and 100 ns, 21 µs and 30 ns.
@@ -74,6 +75,7 @@ struct PosePipeline::Parts
     std::size_t chunkCapacity(const PoseBatch& batch) const;
     bool hasRoomForMasks(SetResources& resources, const PoseBatch& batch) const;
     bool isSeparate(const PoseBatch& batch, const std::vector<PosePalette::Chunk*>& chunks) const;
+    bool mayBeSeparate(const AnimationSet& set, std::size_t instances) const;
     SetResources& resourcesOf(const PoseBatch& batch);
 
     const Options& options;
@@ -176,7 +178,7 @@ bool PosePipeline::evaluateInEachForm(osg::State& state, const PoseBatch& batch,
     if (_options.form != Form::Automatic || batch.needs().constraints != 0) return evaluate(state, batch, slot);
     _options.form = Form::Fused;
     bool isEvaluated = evaluate(state, batch, slot);
-    if (isEvaluated)
+    if (isEvaluated && _parts->mayBeSeparate(batch.set(), batch.size()))
     {
         _parts->sets.at(&batch.set()).palettes[slot]->invalidate();
         _options.form = Form::Separate;
@@ -186,20 +188,24 @@ bool PosePipeline::evaluateInEachForm(osg::State& state, const PoseBatch& batch,
     return isEvaluated;
 }
 
+/// True if the separate form has fewer draws, and its buffers have room for so many instances.
+bool PosePipeline::Parts::mayBeSeparate(const AnimationSet& set, std::size_t instances) const
+{
+    const std::size_t widest = std::max(set.paletteSize(), set.trackCount());
+    return set.levelCount() > separateDraws && POSE_TEXELS_PER_MATRIX * widest * instances <= options.maxTexels;
+}
+
 bool PosePipeline::Parts::isSeparate(const PoseBatch& batch, const std::vector<PosePalette::Chunk*>& chunks) const
 {
     if (batch.needs().constraints != 0 || options.form == Form::Fused) return false;
     if (options.form == Form::Separate) return true;
-    const std::size_t levels = batch.set().levelCount();
-    if (levels <= separateDraws) return false;
-    const std::size_t widest = std::max(batch.set().paletteSize(), batch.set().trackCount());
-    const auto isWithin = [&](const PosePalette::Chunk* chunk)
-    { return POSE_TEXELS_PER_MATRIX * widest * chunk->width <= options.maxTexels; };
+    const AnimationSet& set = batch.set();
     const std::size_t instances =
         std::accumulate(chunks.begin(), chunks.end(), std::size_t(0),
                         [](std::size_t sum, const auto* chunk) { return sum + chunk->width; });
-    return widest * instances <= (levels - separateDraws) * options.entriesWorthADraw &&
-           std::all_of(chunks.begin(), chunks.end(), isWithin);
+    if (!mayBeSeparate(set, instances)) return false;
+    const std::size_t levels = set.levelCount(), entries = std::max(set.paletteSize(), set.trackCount()) * instances;
+    return entries * levels <= (levels - separateDraws) * options.entriesWorthADraw * measuredLevels;
 }
 
 std::size_t PosePipeline::chunkCapacity(const AnimationSet& set, const Options& options)

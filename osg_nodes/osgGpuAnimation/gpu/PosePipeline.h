@@ -43,8 +43,8 @@ public:
     struct Options
     {
         Form form = Form::Automatic; ///< the division of the stages into passes
-        /// How many palette entries take as much longer in the separate form as one draw does in the fused form. The
-        /// initial value is that of a card or of a software renderer.
+        /// How many palette entries of 8 levels take as much longer in the separate form as one draw does in the fused
+        /// form. The initial value is that of a card or of a software renderer.
         std::size_t entriesWorthADraw = 0;
         /// The largest number of texels of a buffer texture: at most GL_MAX_TEXTURE_BUFFER_SIZE, the initial value.
         std::size_t maxTexels = 0;

@@ -110,6 +110,15 @@ osg::ref_ptr<osg::Shader> lightShader(bool isCore)
     return shared[isCore].get([isCore] { return makeLightShader(isCore); });
 }
 
+osg::ref_ptr<osg::Shader> lightShader()
+{
+#ifdef OSG_GL_FIXED_FUNCTION_AVAILABLE
+    return lightShader(false);
+#else
+    return lightShader(true);
+#endif
+}
+
 void bindSkinAttributes(osg::Program& program)
 {
     program.addBindAttribLocation("poseEntries0", POSE_ENTRIES_0_LOCATION);

@@ -69,7 +69,9 @@ osg::ref_ptr<osg::Shader> materialShader();
 ///
 /// Shadow maps need an int uniform `shadowMaps` of 7 elements with the values 1 to 7, too. Lights of glTF files have no
 /// range and OpenGL's cone.
-osg::ref_ptr<osg::Shader> lightShader(bool isCore = false);
+osg::ref_ptr<osg::Shader> lightShader(bool isCore);
+/// For a compatibility profile, or, with an OSG without the fixed pipeline, for a core profile.
+osg::ref_ptr<osg::Shader> lightShader();
 /// Binds the attributes of the two vertex shaders to the locations of layout.glsl.
 void bindSkinAttributes(osg::Program& program);
 

@@ -18,11 +18,12 @@ using namespace osgGpuAnimation;
 namespace
 {
 
-void limit(int resource, rlim_t most)
+/// A signal tells of the limit of time; a second beyond it the kernel kills.
+void limit(int resource, rlim_t max)
 {
-    rlimit both{most, most};
+    rlimit both{max, resource == RLIMIT_CPU ? max + 1 : max};
     rlimit current{};
-    if (getrlimit(static_cast<__rlimit_resource>(resource), &current) == 0 && current.rlim_max < most)
+    if (getrlimit(static_cast<__rlimit_resource>(resource), &current) == 0 && current.rlim_max < both.rlim_max)
         both.rlim_cur = both.rlim_max = current.rlim_max;
     setrlimit(static_cast<__rlimit_resource>(resource), &both);
 }
@@ -32,14 +33,14 @@ void limit(int resource, rlim_t most)
     _exit(assimp::exitOutOfMemory);
 }
 
-bool write(const std::string& bytes)
+bool write(const std::string& bytes, std::FILE* out)
 {
-    return std::fwrite(bytes.data(), 1, bytes.size(), stdout) == bytes.size();
+    return std::fwrite(bytes.data(), 1, bytes.size(), out) == bytes.size();
 }
 
-bool writeFrame(assimp::FrameKind kind, const std::string& content)
+bool writeFrame(std::FILE* out, assimp::FrameKind kind, const std::string& content)
 {
-    return write(assimp::frameHeader(kind, content.size())) && write(content);
+    return write(assimp::frameHeader(kind, content.size()), out) && write(content, out);
 }
 
 } // namespace
@@ -57,6 +58,8 @@ int main(int count, char** arguments)
 #ifdef SYS_close_range
     syscall(SYS_close_range, STDERR_FILENO + 1, ~0u, 0); // files and devices of the host
 #endif
+    std::FILE* const frames = fdopen(dup(STDOUT_FILENO), "wb");
+    dup2(STDERR_FILENO, STDOUT_FILENO); // what libraries print
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_FSIZE, 0);
     limit(RLIMIT_CPU, std::strtoull(arguments[1], nullptr, 10));
@@ -70,13 +73,13 @@ int main(int count, char** arguments)
     gltf::Messages messages;
     gltf::Report report(messages);
     const Result<std::string> glb = assimp::readAsGlb(arguments[6], options, report);
-    bool isWritten = true;
+    bool isWritten = frames != nullptr;
     for (const std::string& each : messages.warnings)
-        isWritten = isWritten && writeFrame(assimp::FrameKind::Warning, each);
+        isWritten = isWritten && writeFrame(frames, assimp::FrameKind::Warning, each);
     for (const std::string& each : messages.notes)
-        isWritten = isWritten && writeFrame(assimp::FrameKind::Note, each);
-    isWritten = isWritten && (glb ? writeFrame(assimp::FrameKind::Glb, glb.value())
-                                  : writeFrame(assimp::FrameKind::Error, glb.error().message));
-    isWritten = std::fflush(stdout) == 0 && isWritten;
+        isWritten = isWritten && writeFrame(frames, assimp::FrameKind::Note, each);
+    isWritten = isWritten && (glb ? writeFrame(frames, assimp::FrameKind::Glb, glb.value())
+                                  : writeFrame(frames, assimp::FrameKind::Error, glb.error().message));
+    isWritten = isWritten && std::fflush(frames) == 0;
     _exit(isWritten ? 0 : 1); // what the libraries would tidy up belongs to no one
 }

@@ -195,8 +195,17 @@ std::optional<Error> leaveOutNonFinite(std::map<std::string, int>& attributes, N
     return std::nullopt;
 }
 
-/// The same for all primitives. Returns a fault also if no primitive has the accessor. What else refers to an accessor
-/// that was left out reads zeros.
+bool isOfAnimationOrSkin(const Model& model, int accessor)
+{
+    for (const tinygltf::Skin& skin : model.skins)
+        if (skin.inverseBindMatrices == accessor) return true;
+    for (const tinygltf::Animation& animation : model.animations)
+        for (const tinygltf::AnimationSampler& sampler : animation.samplers)
+            if (sampler.input == accessor || sampler.output == accessor) return true;
+    return false;
+}
+
+/// The same for all primitives. Returns a fault also if no primitive has the accessor, or an animation or a skin does.
 std::optional<Error> leaveOutNonFinite(Model& model, NonFiniteAccessors accessors, Report& report)
 {
     if (accessors.empty()) return std::nullopt;
@@ -211,7 +220,7 @@ std::optional<Error> leaveOutNonFinite(Model& model, NonFiniteAccessors accessor
         }
     for (const auto& [index, accessor] : accessors)
     {
-        if (!accessor.isLeftOut) return accessor.fault;
+        if (!accessor.isLeftOut || isOfAnimationOrSkin(model, index)) return accessor.fault;
         elementOf(model.accessors, index).bufferView = -1;
         elementOf(model.accessors, index).sparse.isSparse = false;
     }

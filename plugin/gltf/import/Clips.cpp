@@ -187,8 +187,9 @@ bool ClipReader::readChannel(const tinygltf::Animation& animation, std::size_t i
 double ClipReader::shiftToZero()
 {
     double begin = 0.0;
-    for (const ReadChannel& read : _channels)
-        begin = std::min(begin, read.channel.times.front());
+    for (const ReadChannel& read : _channels) // but those that mendTimes() leaves out
+        if (std::is_sorted(read.channel.times.begin(), read.channel.times.end()))
+            begin = std::min(begin, read.channel.times.front());
     if (begin == 0.0) return begin;
     _report.warn(_clip + ": expected times from 0 on, found " + numberText(begin) + "; the clip begins there");
     for (ReadChannel& read : _channels)
@@ -233,7 +234,11 @@ bool ClipReader::addChannels()
 std::string ClipReader::nameOf(const tinygltf::Animation& animation, std::size_t index) const
 {
     if (animation.name.empty()) return "clip " + std::to_string(index);
-    return isGenericClipName(animation.name) && !_fileName.empty() ? _fileName : animation.name;
+    if (_fileName.empty() || !isGenericClipName(animation.name)) return animation.name;
+    const auto isInTheWay = [&](const tinygltf::Animation& other)
+    { return &other != &animation && (isGenericClipName(other.name) || other.name == _fileName); };
+    const bool isAlone = std::none_of(_model.animations.begin(), _model.animations.end(), isInTheWay);
+    return isAlone ? _fileName : animation.name;
 }
 
 std::optional<Clip> ClipReader::read(std::size_t index)

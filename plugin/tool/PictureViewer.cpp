@@ -9,6 +9,7 @@
 #include <osg/Geometry>
 #include <osg/GLExtensions>
 #include <osg/LightModel>
+#include <osg/LightSource>
 #include <osg/MatrixTransform>
 #include <osg/Projection>
 #include <osg/Texture2D>
@@ -63,15 +64,15 @@ float surroundingOf(Look look)
     return look == Look::Sun ? 0.3f : look == Look::File ? 0.05f : 1.0f;
 }
 
-void setUpLight(osgViewer::Viewer& viewer, Look look)
+osg::ref_ptr<osg::LightSource> makeSun()
 {
-    if (look != Look::Sun) return viewer.setLightingMode(osg::View::NO_LIGHT);
-    viewer.setLightingMode(osg::View::SKY_LIGHT);
-    osg::Light* light = viewer.getLight();
+    osg::ref_ptr<osg::LightSource> sun = new osg::LightSource;
+    osg::Light* light = sun->getLight();
     light->setPosition(osg::Vec4(0.6f, -0.9f, 1.1f, 0.0f));
     light->setAmbient(osg::Vec4(0.0f, 0.0f, 0.0f, 1.0f));
     light->setDiffuse(osg::Vec4(0.7f, 0.7f, 0.68f, 1.0f));
     light->setSpecular(osg::Vec4(0.2f, 0.2f, 0.2f, 1.0f));
+    return sun;
 }
 
 /// The scene in its surroundings.
@@ -86,8 +87,12 @@ osg::ref_ptr<osg::Group> lit(osg::Node* scene, Look look, Environment* surroundi
         group->getOrCreateStateSet()->setAttribute(ambient);
     }
     group->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::ON);
-    // An OSG without the fixed pipeline does not switch on a viewer's light.
-    if (look == Look::Sun) group->getStateSet()->setMode(GL_LIGHT0, osg::StateAttribute::ON);
+    if (look == Look::Sun) // no light of the viewer's: an OSG without the fixed pipeline has none
+    {
+        const osg::ref_ptr<osg::LightSource> sun = makeSun();
+        sun->setStateSetModes(*group->getStateSet(), osg::StateAttribute::ON);
+        group->addChild(sun);
+    }
     group->addChild(scene);
     return group;
 }
@@ -146,7 +151,7 @@ Result<std::unique_ptr<PictureViewer>> PictureViewer::create(int width, int heig
     osgViewer::Viewer& viewer = made->_viewer;
     viewer.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
     viewer.setRealizeOperation(new ForgetMissingExtensions);
-    setUpLight(viewer, look);
+    viewer.setLightingMode(osg::View::NO_LIGHT);
     osg::Camera* camera = viewer.getCamera();
     camera->setGraphicsContext(context.value());
     camera->setViewport(0, 0, width, height);

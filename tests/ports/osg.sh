@@ -19,12 +19,15 @@ without=(
     ShaderLanguageGLTest ReadmeShadersGLTest CharacterDrawsGLTest.drawnTogether SurfaceColorsGLTest.theTextureMatrix
     # lighting that is on unless it is switched off, and lights without a LightSource
     'PbrLightGLTest' 'PbrMaterialGLTest' LightsGLTest AnimatedPropertiesGLTest.stored ProfileGLTest.overridden
+    looks.furnace # without lights a core profile has a headlight
     # osgShadow and osgFX
     ShadowGLTest ShadowPluginGLTest
     # its record of buffers in vertex array objects, programs whose matrices contexts share, warnings of its own
     BindingsGLTest JoiningModelsGLTest ViewersGLTest.contextsThatShare 'TwoContextsGLTest.*Shared' SerializersGLTest
     # drawings of osgAnimation, plugins that are not built here
     ConvertedScenesGLTest CommandFailuresGLTest PlantedPluginsGLTest
+    # time, which the warnings of this OSG take
+    CloningGLTest.theFirstFrame
     # a program that prepareFirstDraw() does not foresee in a core profile
     FirstDrawGLTest.theFirstFrame ReadmeStartGLTest.aSceneIsCompiled
 )

@@ -3,6 +3,7 @@
 
 #include "assimp/FbxConversion.h"
 #include "assimp/SceneConversion.h"
+#include "gltf/file/ModelBytes.h"
 #include "gltf/file/Uri.h"
 
 #include <assimp/config.h>
@@ -13,13 +14,12 @@
 #include <assimp/ProgressHandler.hpp>
 #include <assimp/scene.h>
 
-#include <algorithm>
-#include <cctype>
+#include <osgDB/FileNameUtils>
+
 #include <chrono>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <system_error>
+#include <utility>
 
 namespace osgGpuAnimation::assimp
 {
@@ -86,23 +86,13 @@ constexpr unsigned int steps = aiProcess_Triangulate | aiProcess_SortByPType | a
                                aiProcess_JoinIdenticalVertices | aiProcess_GenSmoothNormals | aiProcess_GlobalScale |
                                aiProcess_FindInvalidData | aiProcess_ValidateDataStructure;
 
-std::string contentOf(const std::string& fileName)
-{
-    std::ifstream file(fileName, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
-bool isFbx(const std::string& fileName)
-{
-    std::string extension = std::filesystem::path(fileName).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-    return extension == ".fbx";
-}
-
 Result<const aiScene*> readFbx(Assimp::Importer& importer, const std::string& fileName, gltf::Report& report)
 {
-    const Result<fbx::Scene> fbx = fbx::Scene::read(contentOf(fileName));
+    const Result<gltf::RegularFile> file = gltf::RegularFile::open(fileName);
+    if (!file) return file.error();
+    Result<std::string> content = file.value().readWhole();
+    if (!content) return content.error();
+    const Result<fbx::Scene> fbx = fbx::Scene::read(std::move(content.value()));
     if (!fbx) return fbx.error();
     // Pivots, which would become chains of nodes with names of Assimp's own, are completeFbx()'s.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
@@ -128,7 +118,7 @@ Result<const aiScene*> readScene(Assimp::Importer& importer, const std::string& 
         return Error{"the file has more than " + std::to_string(maxFileBytes) + " bytes"};
     importer.SetIOHandler(new FolderFiles(fileName, options.allowOutsideFiles)); // the importer deletes both
     importer.SetProgressHandler(new TimeLimit);
-    if (isFbx(fileName)) return readFbx(importer, fileName, report);
+    if (osgDB::getLowerCaseFileExtension(fileName) == "fbx") return readFbx(importer, fileName, report);
     const aiScene* const scene = importer.ReadFile(fileName, steps);
     if (!scene) return unreadable(importer);
     return scene;

@@ -166,13 +166,11 @@ struct Motion
     template <class Function>
     static VectorKeys vectors(std::vector<double> times, const fbx::Take& take, const Function& function)
     {
-        double size = glm::length(function(take.begin, false));
-        for (const double time : times)
-            size = std::max(size, glm::length(function(time, false)));
-        return sampledTrack(
+        return relativeTrack(
             std::move(times), take.begin, take.end, function,
             [](const glm::dvec3& a, const glm::dvec3& b, double share) { return glm::mix(a, b, share); },
-            [](const glm::dvec3& a, const glm::dvec3& b) { return glm::length(a - b); }, relativeTolerance * size);
+            [](const glm::dvec3& a, const glm::dvec3& b) { return glm::length(a - b); },
+            [](const glm::dvec3& vector) { return glm::length(vector); }, relativeTolerance);
     }
 };
 
@@ -205,6 +203,12 @@ public:
     }
 
 private:
+    glm::dmat4 inMetres(glm::dmat4 matrix) const
+    {
+        matrix[3] *= glm::dvec4(_metres, _metres, _metres, 1.0);
+        return matrix;
+    }
+
     void findCompensated();
     void placeNodes();
     void place(aiNode& node, const fbx::Model& model, bool isBelowHidden);
@@ -301,8 +305,7 @@ void FbxCompletion::place(aiNode& node, const fbx::Model& model, bool isBelowHid
 
 void FbxCompletion::moveMeshes(aiNode& node, const fbx::Model& model)
 {
-    glm::dmat4 geometric = model.geometric;
-    geometric[3] *= glm::dvec4(_metres, _metres, _metres, 1.0);
+    const glm::dmat4 geometric = inMetres(model.geometric);
     const bool isMoved = geometric != glm::dmat4(1.0);
     bool hasBones = false;
     for (unsigned int i = 0; i < node.mNumMeshes; ++i)
@@ -333,9 +336,7 @@ void FbxCompletion::setBones(aiMesh& mesh, const fbx::Model& model, const glm::d
         for (const fbx::Binding& binding : model.bindings)
         {
             if (mesh.mBones[i]->mName != aiString(_fbx.models[binding.bone].uniqueName)) continue;
-            glm::dmat4 meshToBone = binding.meshToBone;
-            meshToBone[3] *= glm::dvec4(_metres, _metres, _metres, 1.0);
-            mesh.mBones[i]->mOffsetMatrix = toAssimp(meshToBone * geometric);
+            mesh.mBones[i]->mOffsetMatrix = toAssimp(inMetres(binding.meshToBone) * geometric);
             break;
         }
 }
@@ -438,8 +439,6 @@ aiMeshMorphAnim* FbxCompletion::weights(const fbx::Take& take, std::size_t numbe
             track.percent.appendTimes(times);
         }
     if (curves.empty()) return nullptr;
-    std::sort(times.begin(), times.end()); // of one time for each of its curves
-    times.erase(std::unique(times.begin(), times.end()), times.end());
     const auto weightsAt = [&](double time, bool before)
     {
         std::vector<double> values;
@@ -467,10 +466,8 @@ aiMeshMorphAnim* FbxCompletion::weights(const fbx::Take& take, std::size_t numbe
             distance = std::max(distance, std::abs(a[i] - b[i]));
         return distance;
     };
-    double size = maxMagnitude(weightsAt(take.begin, false));
-    for (const double time : times)
-        size = std::max(size, maxMagnitude(weightsAt(time, false)));
-    const auto keys = sampledTrack(times, take.begin, take.end, weightsAt, mixed, apart, relativeTolerance * size);
+    const auto keys =
+        relativeTrack(std::move(times), take.begin, take.end, weightsAt, mixed, apart, maxMagnitude, relativeTolerance);
     aiMeshMorphAnim* const made = new aiMeshMorphAnim;
     made->mName = _morphed.at(number) + "*0";
     made->mNumKeys = static_cast<unsigned int>(keys.size());

@@ -72,4 +72,18 @@ auto sampledTrack(std::vector<double> times, double begin, double end, const Fun
     return keys;
 }
 
+/// sampledTrack() with a tolerance relative to the largest magnitude at the begin and those times.
+template <class Function, class Between, class Distance, class Magnitude>
+auto relativeTrack(std::vector<double> times, double begin, double end, const Function& function,
+                   const Between& between, const Distance& distance, const Magnitude& magnitude,
+                   double relativeTolerance)
+{
+    std::sort(times.begin(), times.end()); // curves of one track share many
+    times.erase(std::unique(times.begin(), times.end()), times.end());
+    double size = magnitude(function(begin, false));
+    for (const double time : times)
+        size = std::max(size, static_cast<double>(magnitude(function(time, false))));
+    return sampledTrack(std::move(times), begin, end, function, between, distance, relativeTolerance * size);
+}
+
 } // namespace osgGpuAnimation::assimp

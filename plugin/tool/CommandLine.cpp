@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -182,8 +183,7 @@ void addClips(CLI::App& command, ModelArguments& arguments)
                     "Joints and their counterparts in those files, as JSON: {\"Hips\": \"pelvis\"}")
         ->option_text("FILE");
     addChoice<ClipMatch>(
-        command, "--clip-match", arguments.clipMatch,
-        {{"auto", ClipMatch::Automatic}, {"byName", ClipMatch::ByName}, {"retarget", ClipMatch::Retarget}},
+        command, "--clip-match", arguments.clipMatch, {std::begin(gltf::clipMatches), std::end(gltf::clipMatches)},
         "byName: joints take the transforms of those clips as they are, for files whose rest pose is their first "
         "frame; "
         "retarget: their difference from the rest pose; default: auto");

@@ -9,6 +9,18 @@
 namespace osgGpuAnimation
 {
 
+/// The begin of an FBX 7.4 file in ASCII, in centimetres. up, front: axes, 0 to 2; frontSign: 1 or -1.
+inline std::string fbxHeader(int up, int front, int frontSign)
+{
+    const auto setting = [](const std::string& name, int value)
+    { return "\t\tP: \"" + name + "\", \"int\", \"Integer\", \"\"," + std::to_string(value) + "\n"; };
+    return "; FBX 7.4.0 project file\nFBXHeaderExtension:  {\n\tFBXVersion: 7400\n}\n"
+           "GlobalSettings:  {\n\tProperties70:  {\n" +
+           setting("UpAxis", up) + setting("UpAxisSign", 1) + setting("FrontAxis", front) +
+           setting("FrontAxisSign", frontSign) + setting("CoordAxis", 0) + setting("CoordAxisSign", 1) +
+           "\t\tP: \"UnitScaleFactor\", \"double\", \"Number\", \"\",1\n\t}\n}\n";
+}
+
 /// An FBX 7.4 file in ASCII, object by object; centimetres, +Y up. Boxes have edges of 100 units around their origin.
 ///
 ///     SmallFbx file;
@@ -125,24 +137,7 @@ a: 0,2,3,-2,4,5,7,-7,0,1,5,-5,2,6,7,-4,0,4,6,-3,1,3,7,-6
 
     std::string text() const
     {
-        return R"(; FBX 7.4.0 project file
-FBXHeaderExtension:  {
-	FBXVersion: 7400
-}
-GlobalSettings:  {
-	Properties70:  {
-		P: "UpAxis", "int", "Integer", "",1
-		P: "UpAxisSign", "int", "Integer", "",1
-		P: "FrontAxis", "int", "Integer", "",2
-		P: "FrontAxisSign", "int", "Integer", "",1
-		P: "CoordAxis", "int", "Integer", "",0
-		P: "CoordAxisSign", "int", "Integer", "",1
-		P: "UnitScaleFactor", "double", "Number", "",1
-	}
-}
-Objects:  {
-)" + _objects + "}\nConnections:  {\n" +
-               _connections + "}\n";
+        return fbxHeader(1, 2, 1) + "Objects:  {\n" + _objects + "}\nConnections:  {\n" + _connections + "}\n";
     }
 
     static std::string vector(const std::string& property, double x, double y, double z)

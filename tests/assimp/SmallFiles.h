@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "assimp/SmallFbx.h"
+
 #include <osgGpuAnimation/animation/Skin.h>
 #include <string>
 
@@ -11,22 +13,7 @@ namespace osgGpuAnimation
 /// and at rest it leaves it where it is: (2, 3, 0), (3, 3, 0) and (2, 4, 0) m in glTF's axes.
 inline std::string skinnedFbx()
 {
-    return R"(; FBX 7.4.0 project file
-FBXHeaderExtension:  {
-	FBXVersion: 7400
-}
-GlobalSettings:  {
-	Properties70:  {
-		P: "UpAxis", "int", "Integer", "",2
-		P: "UpAxisSign", "int", "Integer", "",1
-		P: "FrontAxis", "int", "Integer", "",1
-		P: "FrontAxisSign", "int", "Integer", "",-1
-		P: "CoordAxis", "int", "Integer", "",0
-		P: "CoordAxisSign", "int", "Integer", "",1
-		P: "UnitScaleFactor", "double", "Number", "",1
-	}
-}
-Objects:  {
+    return fbxHeader(2, 1, -1) + R"(Objects:  {
 	Model: 1, "Model::bone", "LimbNode" {
 		Properties70:  {
 			P: "Lcl Translation", "Lcl Translation", "", "A",0,0,150

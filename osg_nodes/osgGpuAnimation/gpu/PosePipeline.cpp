@@ -51,6 +51,12 @@ std::size_t correctionsOf(const AnimationSet& set)
     return count;
 }
 
+/// The number of matrices of an instance that the separate form writes in its largest pass.
+std::size_t widestPassOf(const AnimationSet& set)
+{
+    return std::max(set.paletteSize(), set.trackCount());
+}
+
 constexpr std::size_t separateDraws = 3;
 constexpr std::size_t measuredLevels = 8; ///< of entriesWorthADraw(); an entry of the separate form walks to the root
 
@@ -178,7 +184,7 @@ bool PosePipeline::evaluateInEachForm(osg::State& state, const PoseBatch& batch,
     if (_options.form != Form::Automatic || batch.needs().constraints != 0) return evaluate(state, batch, slot);
     _options.form = Form::Fused;
     bool isEvaluated = evaluate(state, batch, slot);
-    if (isEvaluated && _parts->mayBeSeparate(batch.set(), batch.size()))
+    if (isEvaluated && _parts->mayBeSeparate(batch.set(), PosePalette::widthOf(batch.size())))
     {
         _parts->sets.at(&batch.set()).palettes[slot]->invalidate();
         _options.form = Form::Separate;
@@ -191,8 +197,8 @@ bool PosePipeline::evaluateInEachForm(osg::State& state, const PoseBatch& batch,
 /// True if the separate form has fewer draws, and its buffers have room for so many instances.
 bool PosePipeline::Parts::mayBeSeparate(const AnimationSet& set, std::size_t instances) const
 {
-    const std::size_t widest = std::max(set.paletteSize(), set.trackCount());
-    return set.levelCount() > separateDraws && POSE_TEXELS_PER_MATRIX * widest * instances <= options.maxTexels;
+    return set.levelCount() > separateDraws &&
+           POSE_TEXELS_PER_MATRIX * widestPassOf(set) * instances <= options.maxTexels;
 }
 
 bool PosePipeline::Parts::isSeparate(const PoseBatch& batch, const std::vector<PosePalette::Chunk*>& chunks) const
@@ -204,13 +210,14 @@ bool PosePipeline::Parts::isSeparate(const PoseBatch& batch, const std::vector<P
         std::accumulate(chunks.begin(), chunks.end(), std::size_t(0),
                         [](std::size_t sum, const auto* chunk) { return sum + chunk->width; });
     if (!mayBeSeparate(set, instances)) return false;
-    const std::size_t levels = set.levelCount(), entries = std::max(set.paletteSize(), set.trackCount()) * instances;
-    return entries * levels <= (levels - separateDraws) * options.entriesWorthADraw * measuredLevels;
+    const std::size_t levels = set.levelCount();
+    return widestPassOf(set) * instances * levels <=
+           (levels - separateDraws) * options.entriesWorthADraw * measuredLevels;
 }
 
 std::size_t PosePipeline::chunkCapacity(const AnimationSet& set, const Options& options)
 {
-    const std::size_t widest = std::max(set.paletteSize(), options.form == Form::Separate ? set.trackCount() : 0);
+    const std::size_t widest = options.form == Form::Separate ? widestPassOf(set) : set.paletteSize();
     const std::size_t targetTexels = set.constraints().size() * POSE_TEXELS_PER_TARGET;
     const std::size_t texels =
         std::max({POSE_TEXELS_PER_MATRIX * widest, correctionsOf(set), targetTexels, std::size_t(1)});

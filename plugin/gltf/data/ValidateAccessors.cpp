@@ -195,14 +195,22 @@ std::optional<Error> leaveOutNonFinite(std::map<std::string, int>& attributes, N
     return std::nullopt;
 }
 
-bool isOfAnimationOrSkin(const Model& model, int accessor)
+/// Animations and skins cannot do without their accessors.
+void keepThoseOfMotion(const Model& model, NonFiniteAccessors& accessors)
 {
+    const auto keep = [&](int index)
+    {
+        const auto found = accessors.find(index);
+        if (found != accessors.end()) found->second.isLeftOut = false;
+    };
     for (const tinygltf::Skin& skin : model.skins)
-        if (skin.inverseBindMatrices == accessor) return true;
+        keep(skin.inverseBindMatrices);
     for (const tinygltf::Animation& animation : model.animations)
         for (const tinygltf::AnimationSampler& sampler : animation.samplers)
-            if (sampler.input == accessor || sampler.output == accessor) return true;
-    return false;
+        {
+            keep(sampler.input);
+            keep(sampler.output);
+        }
 }
 
 /// The same for all primitives. Returns a fault also if no primitive has the accessor, or an animation or a skin does.
@@ -218,9 +226,10 @@ std::optional<Error> leaveOutNonFinite(Model& model, NonFiniteAccessors accessor
                 error = leaveOutNonFinite(primitive.targets[t], accessors, {m, p}, static_cast<int>(t), report);
             if (error) return error;
         }
+    keepThoseOfMotion(model, accessors);
     for (const auto& [index, accessor] : accessors)
     {
-        if (!accessor.isLeftOut || isOfAnimationOrSkin(model, index)) return accessor.fault;
+        if (!accessor.isLeftOut) return accessor.fault;
         elementOf(model.accessors, index).bufferView = -1;
         elementOf(model.accessors, index).sparse.isSparse = false;
     }

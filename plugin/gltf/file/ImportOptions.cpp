@@ -43,10 +43,13 @@ bool readLoopMode(const std::string& text, LoopMode& out)
 
 bool readClipMatch(const std::string& text, ClipMatch& out)
 {
-    if (text == "byName") out = ClipMatch::ByName;
-    if (text == "retarget") out = ClipMatch::Retarget;
-    if (text == "auto") out = ClipMatch::Automatic;
-    return text == "byName" || text == "retarget" || text == "auto";
+    for (const auto& [word, match] : clipMatches)
+        if (text == word)
+        {
+            out = match;
+            return true;
+        }
+    return false;
 }
 
 struct Option

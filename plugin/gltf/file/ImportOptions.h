@@ -23,6 +23,10 @@ struct ImportOptions;
 /// Reads a file of another format as glTF; report: warnings about it. Errors: it cannot.
 using OtherFormats = Result<std::string> (*)(const std::string& path, const ImportOptions& options, Report& report);
 
+/// The words for clipMatch, of the plugin's option and the tool's.
+constexpr std::pair<const char*, ClipMatch> clipMatches[] = {
+    {"auto", ClipMatch::Automatic}, {"byName", ClipMatch::ByName}, {"retarget", ClipMatch::Retarget}};
+
 /// The caller's choices for an import, and the limits that keep a file from any origin harmless.
 struct ImportOptions
 {

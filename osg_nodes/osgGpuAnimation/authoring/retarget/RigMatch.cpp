@@ -32,9 +32,7 @@ bool isOfOneSide(const std::string& name)
 
 bool isCalledHips(const std::string& jointName)
 {
-    std::string name = bareJointName(jointName);
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+    const std::string name = caselessJointName(jointName);
     const bool isHips = name.find("hip") != std::string::npos || name.find("pelvis") != std::string::npos;
     return isHips && !isOfOneSide(name);
 }

@@ -129,10 +129,9 @@ bool isShiny(const osg::State& state)
 }
 
 /// By number; null: none.
-std::array<const osg::Light*, ViewLights::lightCount> lightsOf(const osg::State& state)
+std::array<const osg::Light*, ViewLights::lightCount> lightsOf(const osg::State& state, bool isCore)
 {
     std::array<const osg::Light*, ViewLights::lightCount> lights{};
-    const bool isCore = isCoreProfile(state);
     const auto placed = isCore ? ViewLights::of(state) : std::array<ViewLights::Placed, ViewLights::lightCount>();
     for (unsigned int index = 0; index < ViewLights::lightCount; ++index)
         lights[index] = isCore ? placed[index].light : applied<osg::Light>(state, osg::StateAttribute::LIGHT, index);
@@ -171,7 +170,7 @@ ShaderKey::Fog fogOf(osg::State& state)
 
 void readLights(osg::State& state, ShaderKey& surface)
 {
-    const auto lights = lightsOf(state);
+    const auto lights = lightsOf(state, surface.isCore);
     for (unsigned int index = 0; index < lights.size(); ++index)
     {
         const osg::Light* light = lights[index];
@@ -221,15 +220,16 @@ void setShadowUnits(osg::State& state)
                                                  static_cast<GLsizei>(units.size()), units.data());
 }
 
-void setPunctualLights(osg::State& state, unsigned int lights)
+void setPunctualLights(osg::State& state, const ShaderKey& surface)
 {
     static const unsigned int name = osg::Uniform::getNameID("punctualLights");
     const osg::Program::PerContextProgram* program = state.getLastAppliedProgramObject();
     if (!program) return;
     std::array<osg::Vec4, ViewLights::lightCount> numbers;
-    const auto known = lightsOf(state);
+    const auto known = lightsOf(state, surface.isCore);
     for (unsigned int index = 0; index < known.size(); ++index)
-        if (const auto* light = dynamic_cast<const PunctualLight*>(known[index]); light && (lights & (1u << index)))
+        if (const auto* light = dynamic_cast<const PunctualLight*>(known[index]);
+            light && (surface.punctualLights & (1u << index)))
             numbers[index] = light->coneAndRange();
     state.get<osg::GLExtensions>()->glUniform4fv(program->getUniformLocation(name),
                                                  static_cast<GLsizei>(numbers.size()), numbers[0].ptr());
@@ -400,7 +400,7 @@ void ShaderPermutations::apply(osg::State& state) const
         const ShaderKey surface = ShaderKey::of(state);
         variant(surface)->apply(state);
         if (surface.shadowMaps != 0) setShadowUnits(state);
-        if (surface.punctualLights != 0) setPunctualLights(state, surface.punctualLights);
+        if (surface.punctualLights != 0) setPunctualLights(state, surface);
         setMaterial(state);
         if (!surface.isDepthOnly && surface.isCore) setFixedPipelineUniforms(state, surface.lights);
     }

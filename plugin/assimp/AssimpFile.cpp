@@ -92,7 +92,7 @@ Result<const aiScene*> readFbx(Assimp::Importer& importer, const std::string& fi
     if (!file) return file.error();
     Result<std::string> content = file.value().readWhole();
     if (!content) return content.error();
-    const Result<fbx::Scene> fbx = fbx::Scene::read(std::move(content.value()));
+    const Result<fbx::Scene> fbx = fbx::Scene::read(std::move(content).value());
     if (!fbx) return fbx.error();
     // Pivots, which would become chains of nodes with names of Assimp's own, are completeFbx()'s.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);

@@ -4,6 +4,8 @@
 #include "crowd/CrowdGrid.h"
 
 #include <osg/Notify>
+#include <osgDB/FileNameUtils>
+#include <osgDB/FileUtils>
 #include <osgDB/Registry>
 
 namespace osgGpuAnimation
@@ -27,18 +29,32 @@ protected:
     ReadResult read(const std::string& name, const Options* options) const override
     {
         const std::string given = options ? options->getOptionString() : std::string();
-        const Result<crowd::CrowdOptions> wanted = crowd::parseCrowd(name, given);
-        if (!wanted) return ReadResult(wanted.error().message);
+        Result<crowd::CrowdOptions> parsed = crowd::parseCrowd(name, given);
+        if (!parsed) return ReadResult(parsed.error().message);
+        crowd::CrowdOptions wanted = std::move(parsed).value();
+        wanted.outfits = findOutfits(wanted, options);
         for (const std::string& hint : crowd::optionHints(given))
             OSG_WARN << className() << ": " << hint << std::endl;
-        const std::string& modelFile = wanted.value().modelFile;
+        const std::string& modelFile = wanted.modelFile;
         osg::ref_ptr<Options> forModel = options ? options->cloneOptions() : new Options;
         forModel->setOptionString(crowd::modelOptions(given) + " wholeModel");
         ReadResult model = readModel(modelFile, forModel.get(), "crowd");
         if (!model.validNode()) return model;
-        const Result<osg::ref_ptr<AnimatedCrowd>> crowd = crowd::makeCrowd(*model.getNode(), wanted.value());
+        const Result<osg::ref_ptr<AnimatedCrowd>> crowd = crowd::makeCrowd(*model.getNode(), wanted);
         if (!crowd) return ReadResult(modelFile + ": " + crowd.error().message);
         return ReadResult(crowd.value().get());
+    }
+
+private:
+    /// The path of the outfits file, which may lie beside the model.
+    static std::string findOutfits(const crowd::CrowdOptions& wanted, const Options* options)
+    {
+        if (wanted.outfits.empty() || wanted.outfits == "random") return wanted.outfits;
+        const std::string found = osgDB::findDataFile(wanted.outfits, options);
+        if (!found.empty()) return found;
+        const std::string model = osgDB::findDataFile(wanted.modelFile, options);
+        const std::string beside = osgDB::concatPaths(osgDB::getFilePath(model), wanted.outfits);
+        return osgDB::fileExists(beside) ? beside : wanted.outfits;
     }
 };
 

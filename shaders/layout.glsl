@@ -103,9 +103,16 @@
 #define POSE_PALETTE_UNIT 11
 #define POSE_MORPH_UNIT 12
 #define POSE_TINT_UNIT 13
-// The texture units of instances with shared poses: the list of those drawn, and the placements of all.
+// The texture units of lists of instances: the list of those drawn, and, for instances with shared poses, the placements of
+// all. Of an instance the list has its pose and, in one number, its index in the crowd and above it its outfit (0: none).
 #define POSE_DRAWN_UNIT 30
 #define POSE_PLACEMENT_UNIT 31
+#define POSE_DRAWN_OUTFIT_SHIFT 20
+#define POSE_DRAWN_INDEX_MASK 0xFFFFFu
+
+// The colours of one material in all outfits of a crowd, four to a vector: RGBA, 8 bits each, red lowest.
+#define POSE_OUTFITS_PER_VECTOR 4
+#define POSE_OUTFIT_VECTORS 65
 
 // Morph targets of a mesh: RGBA32F, for each vertex and target one texel per channel: position, normal, colour, texture
 // coordinate, tangent. The weights are in palette entries, twelve per entry.

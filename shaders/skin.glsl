@@ -10,13 +10,15 @@
 // OSG's shader defines (StateSet::setDefine, see applySkinDefines) remove parts that a mesh does not need, since some
 // drivers (llvmpipe) run both sides of every branch. Without the defines the uniforms decide. A SkinnedGeometry has
 // POSE_INFLUENCES or POSE_SKINNED: without them, so for all other meshes, the functions change nothing.
-#pragma import_defines(POSE_SKINNED, POSE_INFLUENCES, POSE_NO_MORPHS, POSE_INSTANCED, POSE_PLACED)
+#pragma import_defines(POSE_SKINNED, POSE_INFLUENCES, POSE_NO_MORPHS, POSE_INSTANCED, POSE_PLACED, POSE_LISTED)
+#pragma import_defines(POSE_OUTFIT_COLORS)
 
 #if defined(POSE_SKINNED) || defined(POSE_INFLUENCES)
 
 uniform samplerBuffer posePalette; // entry e of instance i: rows at texel (e * poseStride + i) * 3
 uniform int poseStride;
-uniform int poseInstance; // of the first GL instance; POSE_INSTANCED: of the batch's first; POSE_PLACED: in poseDrawn
+uniform int poseInstance; // of the first GL instance; POSE_INSTANCED: of the batch's first; POSE_PLACED, POSE_LISTED: in
+                          // poseDrawn
 uniform int poseInfluences; // the largest number per vertex: 1 to 8
 
 uniform samplerBuffer poseMorphDeltas; // by vertex, target, channel
@@ -53,9 +55,10 @@ int osgGpuAnimationInstance()
 {
     return poseInstance + int(poseInstancePose.x);
 }
-#elif defined(POSE_PLACED)
+#elif defined(POSE_PLACED) || defined(POSE_LISTED)
 uniform usamplerBuffer poseDrawn; // per GL instance, from poseInstance on: its pose in the batch, its number in the crowd
-uniform samplerBuffer posePlacements; // by number in the crowd: rows at texel number * 3
+                                  // with its outfit
+uniform samplerBuffer posePlacements; // POSE_PLACED: by number in the crowd: rows at texel number * 3
 
 int osgGpuAnimationInstance()
 {
@@ -64,8 +67,19 @@ int osgGpuAnimationInstance()
 
 int osgGpuAnimationPlacement()
 {
-    return int(texelFetch(poseDrawn, poseInstance + gl_InstanceID).y);
+    return int(texelFetch(poseDrawn, poseInstance + gl_InstanceID).y & POSE_DRAWN_INDEX_MASK);
 }
+
+#ifdef POSE_OUTFIT_COLORS
+uniform uvec4 poseOutfitColors[POSE_OUTFIT_VECTORS];
+
+vec4 osgGpuAnimationOutfitColor()
+{
+    int outfit = int(texelFetch(poseDrawn, poseInstance + gl_InstanceID).y >> POSE_DRAWN_OUTFIT_SHIFT);
+    uint color = poseOutfitColors[outfit / POSE_OUTFITS_PER_VECTOR][outfit % POSE_OUTFITS_PER_VECTOR];
+    return vec4(uvec4(color, color >> 8, color >> 16, color >> 24) & 255u) / 255.0;
+}
+#endif
 #else
 int osgGpuAnimationInstance()
 {
@@ -76,10 +90,14 @@ int osgGpuAnimationInstance()
 vec4 osgGpuAnimationTint()
 {
 #ifdef POSE_PLACED
-    return poseTinted ? texelFetch(poseTints, osgGpuAnimationPlacement()) : vec4(1.0);
+    vec4 tint = poseTinted ? texelFetch(poseTints, osgGpuAnimationPlacement()) : vec4(1.0);
 #else
-    return poseTinted ? texelFetch(poseTints, osgGpuAnimationInstance()) : vec4(1.0);
+    vec4 tint = poseTinted ? texelFetch(poseTints, osgGpuAnimationInstance()) : vec4(1.0);
 #endif
+#ifdef POSE_OUTFIT_COLORS
+    tint *= osgGpuAnimationOutfitColor();
+#endif
+    return tint;
 }
 
 mat3x4 osgGpuAnimationEntry(float entry)

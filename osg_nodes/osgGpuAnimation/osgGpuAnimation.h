@@ -69,6 +69,8 @@
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 #include <osgGpuAnimation/nodes/JointLines.h>
 #include <osgGpuAnimation/nodes/NodeConstraint.h>
+#include <osgGpuAnimation/nodes/Outfit.h>
+#include <osgGpuAnimation/nodes/OutfitsFile.h>
 #include <osgGpuAnimation/nodes/PickedJoint.h>
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
 #include <osgGpuAnimation/nodes/SpringBones.h>

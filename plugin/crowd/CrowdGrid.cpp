@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "crowd/CrowdGrid.h"
 
+#include "crowd/RandomOutfits.h"
 #include "gltf/file/ProgressLine.h"
 #include "gltf/file/Report.h"
 
@@ -89,6 +90,31 @@ AnimationController randomController(const AnimatedCrowd& crowd, const std::vect
     return controller;
 }
 
+/// The outfits that the options ask for, which the crowd then has.
+Result<std::vector<OutfitShare>> addOutfits(AnimatedCrowd& crowd, const CrowdOptions& options)
+{
+    if (options.outfits.empty()) return std::vector<OutfitShare>();
+    Result<std::vector<OutfitShare>> outfits =
+        options.outfits == "random" ? randomOutfits(crowd, options.seed) : readOutfitsFile(options.outfits);
+    if (!outfits) return outfits;
+    for (const OutfitShare& each : outfits.value())
+        if (const Result<void> added = crowd.addOutfit(each.outfit); !added)
+            return Error{options.outfits + ": " + added.error().message};
+    return outfits;
+}
+
+/// outfits: not empty.
+const OutfitShare& randomOutfit(const std::vector<OutfitShare>& outfits, std::mt19937& random)
+{
+    double all = 0.0;
+    for (const OutfitShare& each : outfits)
+        all += each.share;
+    double place = share(random) * all;
+    for (const OutfitShare& each : outfits)
+        if ((place -= each.share) < 0.0) return each;
+    return outfits.back();
+}
+
 } // namespace
 
 Result<osg::ref_ptr<AnimatedCrowd>> makeCrowd(osg::Node& model, const CrowdOptions& options)
@@ -112,7 +138,9 @@ Result<osg::ref_ptr<AnimatedCrowd>> makeCrowd(osg::Node& model, const CrowdOptio
     const double spacing =
         options.spacing.value_or((1.0 + gap) * widthOf(*character, placement, clips.value(), options.isYUp));
     if (const Result<void> taken = crowd->setOrigin(placement.getTrans()); !taken) return taken.error();
-    std::mt19937 random(options.seed);
+    const Result<std::vector<OutfitShare>> outfits = addOutfits(*crowd, options);
+    if (!outfits) return outfits.error();
+    std::mt19937 random(options.seed), ofOutfits(options.seed); // the same clips and times with outfits and without
     for (std::size_t place = 0; place < options.columns * options.rows; ++place)
     {
         const auto column = static_cast<double>(place % options.columns);
@@ -120,9 +148,12 @@ Result<osg::ref_ptr<AnimatedCrowd>> makeCrowd(osg::Node& model, const CrowdOptio
         const double x = spacing * (column - 0.5 * static_cast<double>(options.columns - 1));
         const double y = spacing * (row - 0.5 * static_cast<double>(options.rows - 1));
         const osg::Matrixd moved = osg::Matrixd::translate(x, options.isYUp ? 0.0 : y, options.isYUp ? -y : 0.0);
+        const OutfitShare worn = outfits.value().empty() ? OutfitShare() : randomOutfit(outfits.value(), ofOutfits);
+        const osg::Matrixd size = osg::Matrixd::scale(worn.size, worn.size, worn.size);
         const Result<AnimatedCrowd::Instance> added =
-            crowd->add(placement * moved, randomController(*crowd, clips.value(), random));
+            crowd->add(size * placement * moved, randomController(*crowd, clips.value(), random));
         if (!added) return added.error();
+        if (const Result<void> taken = crowd->setOutfit(added.value(), worn.outfit); !taken) return taken.error();
     }
     if (options.pixelError)
     {

@@ -18,7 +18,7 @@ namespace osgGpuAnimation::crowd
 namespace
 {
 
-constexpr std::array<const char*, 3> ofCrowdsAlone{"clips", "spacing", "seed"};
+constexpr std::array<const char*, 4> ofCrowdsAlone{"clips", "spacing", "seed", "outfits"};
 constexpr std::array<const char*, 6> ofSinglesAlone{"clip", "start", "randomStart", "speed", "loop", "fade"};
 
 template <typename Names>
@@ -79,6 +79,7 @@ std::string wanted(const std::string& name)
     if (name == "seed") return "a whole number from 0 to 4294967295";
     if (name == "spacing") return "a number of units above 0";
     if (name == "pixelError") return LodRange::describePixelErrors();
+    if (name == "outfits") return "random or the name of a JSON file";
     return "names or numbers of clips separated by commas";
 }
 
@@ -88,6 +89,7 @@ bool apply(const gltf::OptionWord& word, CrowdOptions& out)
     const std::string value = word.value.value_or("");
     if (word.name == "noRotation") out.isYUp = true;
     if (word.name == "seed") return readNumber(value, out.seed);
+    if (word.name == "outfits") return !(out.outfits = value).empty();
     if (word.name == "pixelError")
         return readNumber(value, out.pixelError.emplace()) && LodRange::isPixelError(*out.pixelError);
     if (word.name == "spacing")
@@ -108,7 +110,8 @@ const std::vector<gltf::OptionHelp>& optionHelp()
         {"spacing=UNITS", "distance between neighbours; default: by the bounds"},
         {"pixelError=PIXELS",
          "fewer triangles while the error stays below that size on screen; default: 0, all triangles"},
-        {"seed=NUMBER", "seed of the random clips and times; default: 1"},
+        {"outfits=FILE.json|random", "the outfits of the instances, see readOutfitsFile(); default: none"},
+        {"seed=NUMBER", "seed of the random clips, times and outfits; default: 1"},
         {"noRotation", "keep glTF's +Y up; default: +Z up"},
     };
     return help;

@@ -23,6 +23,7 @@ struct CrowdOptions
     std::optional<double> spacing;   ///< distance between neighbours in units of the scene; none: by the clips' bounds
     std::optional<float> pixelError; ///< see CharacterMeshes::setPixelError; none: the character's own
     std::uint32_t seed = 1;          ///< of the random clips and times
+    std::string outfits;             ///< "random", or the name of an outfits file; empty: none
     bool isYUp = false;              ///< the model keeps glTF's +Y up: the ground is XZ
 };
 

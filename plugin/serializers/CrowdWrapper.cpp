@@ -7,7 +7,10 @@
 #include <osgGpuAnimation/mesh/lod/CharacterLevels.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
+#include <osgGpuAnimation/nodes/Outfit.h>
 #include <osgGpuAnimation/scene/OsgMatrix.h>
+
+#include <algorithm>
 
 namespace osgGpuAnimation::serializers
 {
@@ -24,7 +27,8 @@ void transferCrowdSet(ValueStream& stream, AnimatedCrowd& crowd)
 bool hasLevels(const AnimatedCrowd& crowd)
 {
     const std::shared_ptr<const CharacterLevels>& levels = CrowdDetail::levels(crowd);
-    return crowd.getMeshes().getPixelError() > 0.0f && levels && levels->isOf(crowd, crowd.getAnimationSet());
+    return crowd.getMeshes().getPixelError() > 0.0f && levels &&
+           levels->isOf(CrowdDetail::drawnMeshes(crowd), crowd.getAnimationSet(), CrowdDetail::lists(crowd));
 }
 
 /// The playback data after an instance's placement.
@@ -58,15 +62,17 @@ void transferPlain(ValueStream& stream, AnimationController& controller)
 struct StoredInstance
 {
     AffineMatrix root;
-    std::uint32_t tint = 0; ///< RGBA, 8 bits each, red lowest
+    std::uint32_t tint = 0;  ///< RGBA, 8 bits each, red lowest
+    std::int32_t outfit = 0; ///< from 1 on, in the order of the crowd's outfits; 0: none
     AnimationController controller;
 };
 
-void transferInstance(ValueStream& stream, StoredInstance& instance)
+void transferInstance(ValueStream& stream, StoredInstance& instance, std::size_t outfits)
 {
     auto tint = static_cast<std::int32_t>(instance.tint);
     Playback playback = playbackOf(instance.controller);
     stream.property("Instance").values(instance.root, tint);
+    stream.limited("the outfit of an instance", instance.outfit, 0, static_cast<std::int32_t>(outfits));
     stream.limited("an instance's playback", playback, Playback::Controller);
     if (playback == Playback::Plain) transferPlain(stream, instance.controller);
     stream.endLine();
@@ -77,19 +83,38 @@ void transferInstance(ValueStream& stream, StoredInstance& instance)
 void transferList(ValueStream& stream, AnimatedCrowd& crowd)
 {
     const osg::Matrixd toPlacement = osg::Matrixd::inverse(crowd.getFileToNode());
+    const std::vector<osg::ref_ptr<Outfit>> outfits = crowd.getOutfits();
+    const auto numberOf = [&](const Outfit* outfit)
+    {
+        const auto place = std::find(outfits.begin(), outfits.end(), outfit);
+        return outfit ? static_cast<std::int32_t>(place - outfits.begin() + 1) : 0;
+    };
     const std::size_t count = stream.open("List", crowd.getNumInstances());
     for (std::size_t i = 0; i < count && stream.isGood(); ++i)
     {
-        StoredInstance instance{{}, 0, AnimationController(crowd.getSharedAnimationSet())};
+        const CrowdInstances& instances = CrowdDetail::instances(crowd);
+        StoredInstance instance{{}, 0, 0, AnimationController(crowd.getSharedAnimationSet())};
         if (!stream.isReading())
-            instance = {CrowdDetail::instances(crowd).rootMatrix(i), CrowdDetail::instances(crowd).tint(i),
-                        CrowdDetail::instances(crowd).controllerCopy(i)};
-        transferInstance(stream, instance);
+            instance = {instances.rootMatrix(i), instances.tint(i), numberOf(crowd.getOutfit(instances.handleOf(i))),
+                        instances.controllerCopy(i)};
+        transferInstance(stream, instance, outfits.size());
         if (!stream.hasRead()) continue;
-        stream.require("an instance of a crowd: ", crowd.add(toPlacement * toOsg(instance.root, crowd.getOrigin()),
-                                                             instance.controller, toColor(instance.tint)));
+        const Result<AnimatedCrowd::Instance> added = crowd.add(toPlacement * toOsg(instance.root, crowd.getOrigin()),
+                                                                instance.controller, toColor(instance.tint));
+        stream.require("an instance of a crowd: ", added);
+        if (!added || instance.outfit == 0) continue;
+        stream.require("an instance of a crowd: ",
+                       crowd.setOutfit(added.value(), outfits[static_cast<std::size_t>(instance.outfit - 1)]));
     }
     stream.close();
+}
+
+void transferOutfits(ValueStream& stream, AnimatedCrowd& crowd)
+{
+    std::vector<osg::ref_ptr<Outfit>> outfits = crowd.getOutfits();
+    stream.list("Outfits", outfits, [&](osg::ref_ptr<Outfit>& outfit) { stream.object(outfit); });
+    for (const osg::ref_ptr<Outfit>& outfit : outfits)
+        if (stream.hasRead()) stream.require("a crowd: ", crowd.addOutfit(outfit));
 }
 
 void transferInstances(ValueStream& stream, AnimatedCrowd& crowd)
@@ -101,11 +126,15 @@ void transferInstances(ValueStream& stream, AnimatedCrowd& crowd)
     stream.version("a crowd").values(origin.x(), origin.y(), origin.z(), pixelError, isWithLevels, variant);
     transferFileToNode(stream, crowd);
     stream.endLine();
-    if (isWithLevels) transferCharacterLevels(stream, crowd);
     if (stream.hasRead())
     {
         stream.require("a crowd: ", crowd.setOrigin(origin));
         stream.require("a crowd: ", crowd.getMeshes().setVariant(variant));
+    }
+    transferOutfits(stream, crowd);
+    if (isWithLevels) transferCharacterLevels(stream, crowd);
+    if (stream.hasRead())
+    {
         stream.require("a crowd: ", crowd.getMeshes().setPixelError(static_cast<float>(pixelError)));
     }
     transferList(stream, crowd);

@@ -129,7 +129,7 @@ void transferLodLevels(ValueStream& stream, SkinnedGeometry& mesh)
 
 void transferCharacterLevels(ValueStream& stream, AnimatedCrowd& crowd)
 {
-    const Checksum checksum = checksumOf(crowd);
+    const Checksum checksum = checksumOf(CrowdDetail::drawnMeshes(crowd));
     std::int32_t sum = checksum.value();
     std::vector<CharacterLevels::Merged> levels;
     if (!stream.isReading()) levels = CrowdDetail::levels(crowd)->merged();
@@ -138,7 +138,8 @@ void transferCharacterLevels(ValueStream& stream, AnimatedCrowd& crowd)
     if (!stream.hasRead()) return;
     if (sum != checksum.value()) return warn(crowd, "crowd", "its meshes have changed");
     if (const auto fault = findFault(levels, crowd.getAnimationSet())) return warn(crowd, "crowd", *fault);
-    const auto restored = CharacterLevels::restored(crowd, crowd.getAnimationSet(), std::move(levels));
+    const auto restored = CharacterLevels::restored(CrowdDetail::drawnMeshes(crowd), crowd.getAnimationSet(),
+                                                    std::move(levels), CrowdDetail::lists(crowd));
     if (!restored) return warn(crowd, "crowd", restored.error().message);
     CrowdDetail::setLevels(crowd, restored.value());
 }

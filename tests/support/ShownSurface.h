@@ -41,7 +41,8 @@ public:
             add(mesh, isPart ? MeshDetail::levels(mesh, set).get() : nullptr, level, palette);
         };
         if (merged)
-            merged->forEachMeshAt(level, meshes, show);
+            merged->forEachMeshAt(level, meshes,
+                                  [&](const SkinnedGeometry& mesh, const SkinnedGeometry&) { show(mesh); });
         else
             forEachMesh(meshes, show);
     }

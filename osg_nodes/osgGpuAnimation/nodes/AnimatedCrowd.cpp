@@ -15,7 +15,9 @@
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/callbacks/WorldTargets.h>
+#include <osgGpuAnimation/nodes/Outfit.h>
 #include <osgGpuAnimation/nodes/properties/AnimatedProperties.h>
+#include <osgGpuAnimation/nodes/properties/CrowdOutfits.h>
 #include <osgGpuAnimation/scene/OsgMatrix.h>
 #include <osgGpuAnimation/scene/traversal/CullScopes.h>
 #include <osgGpuAnimation/scene/traversal/MeshVisits.h>
@@ -96,7 +98,7 @@ void AnimatedCrowd::computeBounds()
 {
     const AnimationSet& set = getAnimationSet();
     std::vector<const SkinnedGeometry*> meshes;
-    forEachMesh(*this, [&](const SkinnedGeometry& mesh) { meshes.push_back(&mesh); });
+    forEachMesh(_meshes.drawn(), [&](const SkinnedGeometry& mesh) { meshes.push_back(&mesh); });
     MixBounds::Boxes boxes = mixBoxesOf(meshes, set);
     const std::vector<Box> bounds = boundsOfClips(set, boxes.ofClips);
     _instances->setClipBounds(bounds, std::make_shared<const MixBounds>(set, std::move(boxes)));
@@ -173,6 +175,75 @@ osg::Vec4 AnimatedCrowd::getTint(Instance instance) const
 {
     const std::size_t index = _instances->indexOf(instance);
     return index == CrowdInstances::none ? osg::Vec4(1, 1, 1, 1) : toColor(_instances->tint(index));
+}
+
+/// After a change of the outfits.
+void AnimatedCrowd::showOutfits()
+{
+    if (_meshes._outfits->hasProps()) computeBounds();
+    dirtyBound();
+}
+
+Result<void> AnimatedCrowd::addOutfit(Outfit* outfit)
+{
+    if (!_meshes._outfits) _meshes._outfits = std::make_unique<CrowdOutfits>();
+    const Result<void> added = _meshes._outfits->add(*this, getAnimationSet(), outfit);
+    if (added) showOutfits();
+    return added;
+}
+
+Result<void> AnimatedCrowd::replaceOutfit(const Outfit* outfit, Outfit* by)
+{
+    if (!_meshes._outfits) return Error{"the crowd has no such outfit"};
+    const Result<void> replaced = _meshes._outfits->replace(*this, getAnimationSet(), outfit, by);
+    if (replaced) showOutfits();
+    return replaced;
+}
+
+bool AnimatedCrowd::removeOutfit(const Outfit* outfit)
+{
+    const CrowdOutfits::Number number = _meshes._outfits ? _meshes._outfits->numberOf(outfit) : CrowdOutfits::Number(0);
+    if (number == 0) return false;
+    _instances->removeOutfit(number);
+    _meshes._outfits->remove(*this, outfit);
+    showOutfits();
+    return true;
+}
+
+std::vector<osg::ref_ptr<Outfit>> AnimatedCrowd::getOutfits() const
+{
+    return _meshes._outfits ? _meshes._outfits->all() : std::vector<osg::ref_ptr<Outfit>>();
+}
+
+Result<void> AnimatedCrowd::setOutfit(Instance instance, const Outfit* outfit)
+{
+    const std::size_t index = _instances->indexOf(instance);
+    if (index == CrowdInstances::none) return CrowdInstances::noInstance();
+    const CrowdOutfits::Number number = _meshes._outfits ? _meshes._outfits->numberOf(outfit) : CrowdOutfits::Number(0);
+    if (outfit && number == 0) return Error{"the crowd has no such outfit; addOutfit() adds it"};
+    _instances->setOutfit(index, number);
+    return {};
+}
+
+const Outfit* AnimatedCrowd::getOutfit(Instance instance) const
+{
+    const std::size_t index = _instances->indexOf(instance);
+    return _meshes._outfits && index != CrowdInstances::none ? _meshes._outfits->outfit(_instances->outfit(index))
+                                                             : nullptr;
+}
+
+Result<void> AnimatedCrowd::setInstanceData(Instance instance, osg::Referenced* data)
+{
+    const std::size_t index = _instances->indexOf(instance);
+    if (index == CrowdInstances::none) return CrowdInstances::noInstance();
+    _instances->setUserData(index, data);
+    return {};
+}
+
+osg::Referenced* AnimatedCrowd::getInstanceData(Instance instance) const
+{
+    const std::size_t index = _instances->indexOf(instance);
+    return index == CrowdInstances::none ? nullptr : _instances->userData(index);
 }
 
 Result<osg::Matrixd> AnimatedCrowd::jointToCrowd(Instance instance, std::size_t joint) const
@@ -340,9 +411,11 @@ void AnimatedCrowd::traverse(osg::NodeVisitor& visitor)
     if (osgUtil::CullVisitor* cullVisitor = visitor.asCullVisitor())
         cull(*cullVisitor);
     else if (dynamic_cast<osgUtil::IntersectionVisitor*>(&visitor) || isFileWriter(visitor))
-        visitInstances(*this, *_instances, visitor);
+        visitInstances(*this, *_instances, _meshes._outfits ? _meshes._outfits->nodesOfOutfits() : NodesOfOutfits(),
+                       visitor);
     else if (dynamic_cast<osgUtil::StatsVisitor*>(&visitor))
-        visitMeshesPerInstance(*this, getNumInstances(), visitor);
+        visitMeshesPerInstance(*this, *_instances,
+                               _meshes._outfits ? _meshes._outfits->nodesOfOutfits() : NodesOfOutfits(), visitor);
     else if (const Box now = computesBounds(visitor) ? _instances->bounds() : Box(); !now.empty())
         traverseWithBounds(*this, toOsg(now), visitor);
     else if (!keepFlattenedPlace(*this, visitor))
@@ -361,16 +434,21 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
     if (seen.size() > 0 && getAnimationSet().paletteSize() > 0)
     {
         view.look(seen);
-        if (_meshes.getPixelError() > 0.0f) lods = LodRange(*this, getAnimationSet(), _meshes._levels);
+        if (_meshes.getPixelError() > 0.0f)
+            lods = LodRange(_meshes.drawn(), getAnimationSet(), _meshes._levels, _meshes.lists());
         const LodScale scale(visitor, PoseStage::lodView(visitor), _meshes.getPixelError(), lods);
-        draws = submitSeen(PoseStage::frame(visitor), *_instances, scale, _sharedPoses.get(), seen);
+        const OutfitLists* const lists = _meshes._outfits ? &_meshes._outfits->lists() : nullptr;
+        draws = submitSeen(PoseStage::frame(visitor), *_instances, scale, _sharedPoses.get(), lists, seen);
     }
     for (const DrawState& draw : draws)
     {
         visitor.pushStateSet(draw.stateSet);
-        lods.forEachMeshAt(draw.binding->getLevel(), *this,
-                           [&](const SkinnedGeometry& mesh)
-                           { view.draw(const_cast<SkinnedGeometry&>(mesh), *draw.binding); });
+        lods.forEachMeshAt(draw.binding->getLevel(), _meshes.drawn(),
+                           [&](const SkinnedGeometry& mesh, const SkinnedGeometry& part)
+                           {
+                               if (!_meshes._outfits || _meshes._outfits->listOf(part) == draw.list)
+                                   view.draw(const_cast<SkinnedGeometry&>(mesh), *draw.binding);
+                           });
         visitor.popStateSet();
     }
     const UnculledScope unculled(visitor);
@@ -379,6 +457,7 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
                               {
                                   for (const DrawState& draw : draws)
                                   {
+                                      if (draw.list != OutfitLists::all) continue;
                                       visitor.pushStateSet(draw.stateSet);
                                       view.draw(mesh, *draw.binding);
                                       visitor.popStateSet();
@@ -390,22 +469,25 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
 
 void AnimatedCrowd::prepareSharedPoses()
 {
+    if (_meshes._outfits) _meshes._outfits->update(*this);
     if (_sharedPoses) _sharedPoses->forgetUnused();
     _meshes.createLevels();
     const bool isOn = _meshes.getPixelError() > 0.0f && getAnimationSet().paletteSize() > 0;
-    if (isOn && (!_sharedPoses || !_sharedPoses->isOf(*this))) // kept for the next pixel error
-        _sharedPoses = std::make_unique<SharedPoses>(*this, getAnimationSet());
+    if (isOn && (!_sharedPoses || !_sharedPoses->isOf(_meshes.drawn()))) // kept for the next pixel error
+        _sharedPoses = std::make_unique<SharedPoses>(_meshes.drawn(), getAnimationSet());
 }
 
 void AnimatedCrowd::releaseGLObjects(osg::State* state) const
 {
     osg::Transform::releaseGLObjects(state);
+    if (_meshes._outfits) _meshes._outfits->meshes().releaseGLObjects(state);
     if (_meshes._levels) _meshes._levels->releaseGLObjects(state);
 }
 
 void AnimatedCrowd::resizeGLObjectBuffers(unsigned int maxSize)
 {
     osg::Transform::resizeGLObjectBuffers(maxSize);
+    if (_meshes._outfits) const_cast<osg::Group&>(_meshes._outfits->meshes()).resizeGLObjectBuffers(maxSize);
     if (_meshes._levels) _meshes._levels->resizeGLObjectBuffers(maxSize);
 }
 

@@ -15,12 +15,14 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace osgGpuAnimation
 {
 
 class AnimatedCharacter;
 class CrowdInstances;
+class Outfit;
 class PosedInstances;
 class SharedPoses;
 class StateGraph;
@@ -105,6 +107,26 @@ public:
     Result<osg::Matrixd> jointToCrowd(Instance instance, std::size_t joint) const;
     Result<osg::Matrixd> jointToCrowd(Instance instance, const std::string& joint) const; ///< The same by name.
 
+    /// Outfits: instances that show other parts, colours, variants, pictures or props, in the draws of one crowd. See
+    /// Outfit and the guide. Between frames or in the update traversal, not while the crowd is culled.
+    /// Errors, which change nothing: outfit is null or was added before; it names a part, material, variant or joint
+    /// that the crowd lacks, a colour beyond [0, 1] or an empty picture; the crowd has 256 outfits.
+    Result<void> addOutfit(Outfit* outfit);
+    /// The instances of the outfit get another one, or, with by == outfit, what has changed in it. Errors: those of
+    /// addOutfit(); the crowd has no such outfit.
+    Result<void> replaceOutfit(const Outfit* outfit, Outfit* by);
+    /// Its instances show what the crowd shows. False: there is no such outfit.
+    bool removeOutfit(const Outfit* outfit);
+    std::vector<osg::ref_ptr<Outfit>> getOutfits() const; ///< in the order of their numbers
+    /// outfit: null: none. Errors: no such instance; no such outfit.
+    Result<void> setOutfit(Instance instance, const Outfit* outfit);
+    const Outfit* getOutfit(Instance instance) const; ///< null: none, or no such instance
+
+    /// Data of the application, for example the person that a hit has found, see instanceOf(). Copies of the crowd
+    /// share it; stored scenes have none. data: null: none. Error: no such instance.
+    Result<void> setInstanceData(Instance instance, osg::Referenced* data);
+    osg::Referenced* getInstanceData(Instance instance) const; ///< null: none, or no such instance
+
     /// Poses all joints in a layer of an instance, see AnimatedCharacter::setModelTransforms(). jointToCrowd: one per
     /// joint, from joint space to the space of this node. Further error: no such instance.
     Result<void> setModelTransforms(Instance instance, std::size_t layer,
@@ -163,6 +185,7 @@ private:
     void prepareSharedPoses();
     osg::Matrixd fileToSpace(std::size_t index) const;
     void cull(osgUtil::CullVisitor& visitor);
+    void showOutfits();
 
     std::unique_ptr<CrowdInstances> _instances; ///< never null
     std::unique_ptr<PosedInstances> _posed;     ///< copies do not share it

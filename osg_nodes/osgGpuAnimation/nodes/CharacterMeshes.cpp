@@ -7,6 +7,7 @@
 #include <osgGpuAnimation/mesh/geometry/MeshNames.h>
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/nodes/properties/AnimatedProperties.h>
+#include <osgGpuAnimation/nodes/properties/CrowdOutfits.h>
 
 #include <algorithm>
 
@@ -26,6 +27,7 @@ void CharacterMeshes::copySettings(const CharacterMeshes& other)
     _variant = other._variant;
     _pixelError = other._pixelError;
     _levels = other._levels;
+    if (other._outfits) _outfits = std::make_unique<CrowdOutfits>(*other._outfits);
     if (_properties) _properties->bind(_node); // the children are the other's, too
 }
 
@@ -105,12 +107,23 @@ void CharacterMeshes::showProperties()
     _properties->apply(*_set, _controller->instruction());
 }
 
+const osg::Group& CharacterMeshes::drawn() const
+{
+    return _outfits ? _outfits->meshes() : _node;
+}
+
+const std::vector<std::size_t>& CharacterMeshes::lists() const
+{
+    static const std::vector<std::size_t> all;
+    return _outfits ? _outfits->listsOfMeshes() : all;
+}
+
 Result<void> CharacterMeshes::setPixelError(float pixels)
 {
-    const Result<void> prepared = LodRange::prepare(pixels, _node, *_set);
+    const Result<void> prepared = LodRange::prepare(pixels, drawn(), *_set);
     if (!prepared) return prepared;
     _pixelError = pixels;
-    if (_levels && !_levels->isOf(_node, *_set)) _levels = nullptr;
+    if (_levels && !_levels->isOf(drawn(), *_set, lists())) _levels = nullptr;
     createLevels();
     return {};
 }
@@ -118,7 +131,7 @@ Result<void> CharacterMeshes::setPixelError(float pixels)
 void CharacterMeshes::createLevels()
 {
     const bool isNeeded = !_controller && _pixelError > 0.0f && _set->paletteSize() > 0;
-    if (isNeeded && !_levels) _levels = std::make_shared<const CharacterLevels>(_node, *_set);
+    if (isNeeded && !_levels) _levels = std::make_shared<const CharacterLevels>(drawn(), *_set, lists());
 }
 
 } // namespace osgGpuAnimation

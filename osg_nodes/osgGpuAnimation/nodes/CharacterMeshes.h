@@ -15,6 +15,7 @@ namespace osgGpuAnimation
 class AnimatedProperties;
 class AnimationController;
 class CharacterLevels;
+class CrowdOutfits;
 class VariantMeshes;
 
 /// The meshes of an AnimatedCharacter, or of all instances of an AnimatedCrowd: which are visible, in which variant of
@@ -79,6 +80,8 @@ private:
     void showVariant();                              ///< after the node has got further meshes
     void showProperties();                           ///< those of the controller's present pose
     void createLevels();                             ///< of the crowd, unless they exist
+    const osg::Group& drawn() const;                 ///< the node, or the meshes of a crowd's outfits
+    const std::vector<std::size_t>& lists() const;   ///< see CharacterLevels::Lists
     template <typename Change>
     void change(Change change);
 
@@ -89,6 +92,7 @@ private:
     std::unique_ptr<AnimatedProperties> _properties; ///< null: the set has none, or a crowd
     std::string _variant;
     float _pixelError = 0.0f;                       ///< pixels
+    std::unique_ptr<CrowdOutfits> _outfits;         ///< of a crowd; null: there were none
     std::shared_ptr<const CharacterLevels> _levels; ///< of the crowd as a whole; null: no pixel error yet
 };
 

@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/frame/crowd/CrowdBatches.h>
 
 #include <osgGpuAnimation/frame/stage/PoseStage.h>
+#include <osgGpuAnimation/gpu/PosePipeline.h>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -54,6 +55,41 @@ void sortByBlendCost(const CrowdInstances& instances, const Indices& seen, Indic
     }
     joinSmallGroups(indicesByCost, 0);
     joinSmallGroups(indicesByCost, PoseBatch::blendCostCount);
+}
+
+/// Submits instances with outfits, as many at once as one palette of the context holds, and appends their draws. runs:
+/// the levels of the indices.
+void submitListed(PoseFrame& frame, const CrowdInstances& instances, const OutfitLists& lists, const Indices& indices,
+                  const std::vector<OutfitLists::Run>& runs, std::vector<DrawState>& draws)
+{
+    PosePipeline::Options options;
+    options.maxTexels = frame.getMaxTexels();
+    const std::size_t max = PosePipeline::chunkCapacity(*instances.set(), options);
+    for (std::size_t first = 0; first < indices.size(); first += max)
+    {
+        const std::size_t end = std::min(first + max, indices.size());
+        std::unique_ptr<PoseBatch> batch = frame.makeBatch(instances.set());
+        instances.addTo(*batch, Indices(indices.begin() + static_cast<std::ptrdiff_t>(first),
+                                        indices.begin() + static_cast<std::ptrdiff_t>(end)));
+        const std::shared_ptr<PlacedInstances> list = std::make_shared<PlacedInstances>();
+        list->crowd = instances.identity();
+        list->poseCount = batch->size();
+        for (std::size_t i = first; i < end; ++i)
+            list->drawn.push_back({static_cast<std::uint32_t>(i - first), indices[i]});
+        std::vector<OutfitLists::Run> listed;
+        for (const OutfitLists::Run& run : runs)
+        {
+            const std::size_t begin = std::max(run.first, first), stop = std::min(run.first + run.count, end);
+            if (begin < stop) listed.push_back({run.level, begin - first, stop - begin});
+        }
+        lists.arrange(instances, list->drawn, listed);
+        const std::size_t slot = frame.submitShared(std::move(batch), &instances, list);
+        for (const OutfitLists::Run& run : listed)
+        {
+            draws.push_back(frame.placedState(*instances.set(), slot, list, run.first, run.count, run.level));
+            draws.back().list = run.list;
+        }
+    }
 }
 
 } // namespace
@@ -144,7 +180,7 @@ int CrowdLod::levelOf(std::uint32_t index) const
     return _scale.level(glm::vec3(sphere), sphere.w, _instances.rootMatrix(index));
 }
 
-void CrowdLod::sort(std::vector<std::uint32_t>& indices, std::vector<Run>& outRuns) const
+void CrowdLod::sort(std::vector<std::uint32_t>& indices, std::vector<OutfitLists::Run>& outRuns) const
 {
     static thread_local std::map<int, Indices> levels; // keeps its storage between culls
     for (auto& [level, ofLevel] : levels)
@@ -163,32 +199,34 @@ void CrowdLod::sort(std::vector<std::uint32_t>& indices, std::vector<Run>& outRu
     for (const auto& [level, ofLevel] : levels)
     {
         if (ofLevel.empty()) continue;
+        outRuns.push_back({level, indices.size(), ofLevel.size()});
         indices.insert(indices.end(), ofLevel.begin(), ofLevel.end());
-        outRuns.push_back({level, ofLevel.size()});
     }
 }
 
 std::vector<DrawState> submitSeen(PoseFrame& frame, const CrowdInstances& instances, const CrowdLod& lod,
-                                  const std::vector<std::uint32_t>& seen)
+                                  const OutfitLists* lists, const std::vector<std::uint32_t>& seen)
 {
     static thread_local IndicesByCost indicesByCost;
     sortByBlendCost(instances, seen, indicesByCost);
     std::vector<DrawState> draws;
-    std::vector<CrowdLod::Run> runs;
+    std::vector<OutfitLists::Run> runs;
     for (Indices& indices : indicesByCost)
     {
         if (indices.empty()) continue;
         if (lod.isOn()) lod.sort(indices, runs);
+        if (lists)
+        {
+            if (!lod.isOn()) runs = {{PaletteBinding::allTriangles, 0, indices.size()}};
+            submitListed(frame, instances, *lists, indices, runs, draws);
+            continue;
+        }
         std::unique_ptr<PoseBatch> batch = frame.makeBatch(instances.set());
         instances.addTo(*batch, indices);
         const SubmittedBatch submitted = frame.submit(std::move(batch), &instances, indices);
         if (!lod.isOn()) draws.push_back(submitted.all);
-        std::size_t first = 0;
-        for (const CrowdLod::Run& run : runs)
-        {
-            draws.push_back(frame.partState(*instances.set(), submitted.slot, first, run.count, run.level));
-            first += run.count;
-        }
+        for (const OutfitLists::Run& run : runs)
+            draws.push_back(frame.partState(*instances.set(), submitted.slot, run.first, run.count, run.level));
     }
     return draws;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
+#include <osgGpuAnimation/frame/crowd/OutfitLists.h>
 #include <osgGpuAnimation/frame/stage/LodSelection.h>
 #include <osgGpuAnimation/frame/stage/PoseFrame.h>
 #include <osgGpuAnimation/mesh/draw/PaletteBinding.h>
@@ -57,18 +58,11 @@ private:
 class CrowdLod
 {
 public:
-    /// Consecutive instances of one level.
-    struct Run
-    {
-        int level;
-        std::size_t count;
-    };
-
     CrowdLod(const CrowdInstances& instances, const LodScale& scale) : _instances(instances), _scale(scale) {}
 
     bool isOn() const { return _scale.isOn(); }
     /// Sorts the indices by level, the finest first; stable within a level.
-    void sort(std::vector<std::uint32_t>& indices, std::vector<Run>& outRuns) const;
+    void sort(std::vector<std::uint32_t>& indices, std::vector<OutfitLists::Run>& outRuns) const;
 
 private:
     int levelOf(std::uint32_t index) const;
@@ -80,8 +74,9 @@ private:
 /// Submits the visible instances of a crowd to the frame and returns one state per draw of the crowd's meshes.
 /// Instances with one clip form one batch, and instances that mix clips form others if there are enough
 /// (PoseBatch::BlendCost); instances with and without constraints never share one. Each level of detail in use has its
-/// own draw. seen: indices of the visible instances. Cameras may cull concurrently.
+/// own draw. lists: of a crowd with outfits; null: none. seen: indices of the visible instances. Cameras may cull
+/// concurrently.
 std::vector<DrawState> submitSeen(PoseFrame& frame, const CrowdInstances& instances, const CrowdLod& lod,
-                                  const std::vector<std::uint32_t>& seen);
+                                  const OutfitLists* lists, const std::vector<std::uint32_t>& seen);
 
 } // namespace osgGpuAnimation

@@ -78,9 +78,10 @@ void takeOut(std::vector<Element>& elements, std::size_t index)
 CrowdInstances::CrowdInstances(const CrowdInstances& other)
     : _set(other._set), _clock(other._clock), _clipBounds(other._clipBounds), _allBounds(other._allBounds),
       _mixBounds(other._mixBounds), _rootMatrices(other._rootMatrices), _positions(other._positions),
-      _cells(other._cells), _scales(other._scales), _tints(other._tints), _playbacks(other._playbacks),
-      _isControlledKnown(false), _handles(other._handles), _indexOfPlace(other._indexOfPlace),
-      _usesOfPlace(other._usesOfPlace), _freePlaces(other._freePlaces), _tinted(other._tinted)
+      _cells(other._cells), _scales(other._scales), _tints(other._tints), _outfits(other._outfits),
+      _playbacks(other._playbacks), _isControlledKnown(false), _handles(other._handles),
+      _indexOfPlace(other._indexOfPlace), _usesOfPlace(other._usesOfPlace), _freePlaces(other._freePlaces),
+      _tinted(other._tinted), _userData(other._userData)
 {
     for (const std::unique_ptr<AnimationController>& controller : other._controllers)
         _controllers.push_back(controller ? std::make_unique<AnimationController>(*controller) : nullptr);
@@ -205,6 +206,7 @@ CrowdInstances::Handle CrowdInstances::add(const AffineMatrix& rootMatrix, const
     _scales.push_back(maxScale(rootMatrix));
     _tints.add(tint);
     _tinted += tint != PoseBatch::white;
+    if (!_outfits.empty()) _outfits.push_back(0);
     _playbacks.push_back(isPlain ? CrowdPlayback(controller, _clock) : CrowdPlayback());
     _controllers.push_back(isPlain ? nullptr : std::make_unique<AnimationController>(controller));
     _posedBoxes.emplace_back();
@@ -220,6 +222,7 @@ void CrowdInstances::remove(std::size_t index)
 {
     const std::size_t place = placeOf(_handles[index]);
     _machines.erase(_handles[index]);
+    _userData.erase(_handles[index]);
     ++_usesOfPlace[place];
     _freePlaces.push_back(static_cast<std::uint32_t>(place));
     _tinted -= _tints[index] != PoseBatch::white;
@@ -228,6 +231,7 @@ void CrowdInstances::remove(std::size_t index)
     _cells.remove(index);
     takeOut(_scales, index);
     _tints.remove(index);
+    if (!_outfits.empty()) takeOut(_outfits, index);
     takeOut(_playbacks, index);
     takeOut(_controllers, index);
     takeOut(_posedBoxes, index);
@@ -249,6 +253,32 @@ void CrowdInstances::setTint(std::size_t index, std::uint32_t tint)
     _tinted -= _tints[index] != PoseBatch::white;
     _tints.set(index, tint);
     _tinted += tint != PoseBatch::white;
+}
+
+void CrowdInstances::setOutfit(std::size_t index, std::uint16_t outfit)
+{
+    if (_outfits.empty() && outfit == 0) return;
+    _outfits.resize(size(), 0);
+    _outfits[index] = outfit;
+}
+
+void CrowdInstances::removeOutfit(std::uint16_t outfit)
+{
+    std::replace(_outfits.begin(), _outfits.end(), outfit, std::uint16_t(0));
+}
+
+void CrowdInstances::setUserData(std::size_t index, osg::Referenced* data)
+{
+    if (data)
+        _userData[_handles[index]] = data;
+    else
+        _userData.erase(_handles[index]);
+}
+
+osg::Referenced* CrowdInstances::userData(std::size_t index) const
+{
+    const auto found = _userData.find(_handles[index]);
+    return found == _userData.end() ? nullptr : found->second.get();
 }
 
 PoseInstruction CrowdInstances::instruction(std::size_t index) const

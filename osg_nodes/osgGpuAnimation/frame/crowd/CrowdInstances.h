@@ -10,6 +10,8 @@
 #include <osgGpuAnimation/gpu/buffers/SharedBlocks.h>
 #include <osgGpuAnimation/gpu/PoseBatch.h>
 
+#include <osg/ref_ptr>
+#include <osg/Referenced>
 #include <osg/Vec3d>
 #include <osg/Vec4>
 
@@ -115,6 +117,13 @@ public:
     void remove(std::size_t index);
     void move(std::size_t index, const AffineMatrix& rootMatrix, const osg::Vec3d& position);
     void setTint(std::size_t index, std::uint32_t tint);
+    /// The number of an outfit, see OutfitLists; 0: none.
+    void setOutfit(std::size_t index, std::uint16_t outfit);
+    std::uint16_t outfit(std::size_t index) const { return _outfits.empty() ? std::uint16_t(0) : _outfits[index]; }
+    void removeOutfit(std::uint16_t outfit); ///< its instances have none
+    /// The application's data of an instance; null: none.
+    void setUserData(std::size_t index, osg::Referenced* data);
+    osg::Referenced* userData(std::size_t index) const;
 
     const AffineMatrix& rootMatrix(std::size_t index) const { return _rootMatrices[index]; }
     const osg::Vec3d& position(std::size_t index) const { return _positions[index]; }
@@ -197,6 +206,7 @@ private:
     CrowdCells _cells;
     std::vector<float> _scales;
     SharedBlocks<std::uint32_t> _tints;
+    std::vector<std::uint16_t> _outfits; ///< empty: all have none
     std::vector<CrowdPlayback> _playbacks;
     std::vector<std::unique_ptr<AnimationController>> _controllers; ///< mostly null
     std::vector<std::uint32_t> _controlled;                         ///< the indices of those that are not null
@@ -210,6 +220,7 @@ private:
     std::shared_ptr<const void> _identity = std::make_shared<char>();
     std::shared_ptr<const EventCallback> _eventCallback;
     std::unordered_map<Handle, std::unique_ptr<StateMachine>> _machines;
+    std::unordered_map<Handle, osg::ref_ptr<osg::Referenced>> _userData;
 };
 
 } // namespace osgGpuAnimation

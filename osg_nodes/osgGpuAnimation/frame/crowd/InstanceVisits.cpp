@@ -19,14 +19,12 @@ namespace
 class IntersectedInstance : public osg::Node
 {
 public:
-    IntersectedInstance(const CrowdInstances& instances, const std::vector<osg::Node*>& children)
-        : _instances(instances), _children(children)
-    {
-    }
+    explicit IntersectedInstance(const CrowdInstances& instances) : _instances(instances) {}
 
-    void setIndex(std::size_t index)
+    void set(std::size_t index, const std::vector<osg::Node*>& children)
     {
         _index = index;
+        _children = &children;
         dirtyBound();
     }
 
@@ -35,7 +33,7 @@ public:
         const VisitedInstance visited(_index);
         auto& intersection = static_cast<osgUtil::IntersectionVisitor&>(visitor);
         intersection.pushModelMatrix(new InstanceMatrix(*intersection.getModelMatrix(), _instances.handleOf(_index)));
-        for (osg::Node* child : _children)
+        for (osg::Node* child : *_children)
             child->accept(visitor);
         intersection.popModelMatrix();
     }
@@ -48,7 +46,7 @@ public:
 
 private:
     const CrowdInstances& _instances;
-    const std::vector<osg::Node*>& _children;
+    const std::vector<osg::Node*>* _children = nullptr;
     std::size_t _index = 0;
 };
 
@@ -59,36 +57,51 @@ osg::Node* childAt(const osg::Group& group, unsigned int child)
 
 } // namespace
 
-void visitInstances(const osg::Group& crowd, const CrowdInstances& instances, osg::NodeVisitor& visitor)
+void visitInstances(const osg::Group& crowd, const CrowdInstances& instances, const NodesOfOutfits& ofOutfits,
+                    osg::NodeVisitor& visitor)
 {
     std::vector<osg::Node*> ofInstances;
     for (unsigned int i = 0; i < crowd.getNumChildren(); ++i)
     {
+        osg::Node* const child = childAt(crowd, i);
         bool hasMesh = false;
-        forEachMeshBelow(*childAt(crowd, i), [&](const SkinnedGeometry&) { hasMesh = true; });
-        hasMesh ? ofInstances.push_back(childAt(crowd, i)) : childAt(crowd, i)->accept(visitor);
+        forEachMeshBelow(*child, [&](const SkinnedGeometry&) { hasMesh = true; });
+        if (!hasMesh)
+            child->accept(visitor);
+        else if (ofOutfits.empty() || !dynamic_cast<SkinnedGeometry*>(child))
+            ofInstances.push_back(child);
     }
-    const osg::ref_ptr<IntersectedInstance> intersected = new IntersectedInstance(instances, ofInstances);
+    NodesOfOutfits shown = ofOutfits.empty() ? NodesOfOutfits(1) : ofOutfits;
+    for (std::vector<osg::Node*>& nodes : shown)
+        nodes.insert(nodes.end(), ofInstances.begin(), ofInstances.end());
+    const osg::ref_ptr<IntersectedInstance> intersected = new IntersectedInstance(instances);
     for (std::size_t index = 0; index < instances.size(); ++index)
     {
         const VisitedInstance visited(index);
-        intersected->setIndex(index);
+        const std::vector<osg::Node*>& nodes = shown[ofOutfits.empty() ? 0 : instances.outfit(index)];
+        intersected->set(index, nodes);
         if (dynamic_cast<osgUtil::IntersectionVisitor*>(&visitor))
             visitor.apply(*intersected);
         else
-            for (osg::Node* child : ofInstances)
-                child->accept(visitor);
+            for (osg::Node* node : nodes)
+                node->accept(visitor);
     }
 }
 
-void visitMeshesPerInstance(const osg::Group& crowd, std::size_t instances, osg::NodeVisitor& visitor)
+void visitMeshesPerInstance(const osg::Group& crowd, const CrowdInstances& instances, const NodesOfOutfits& ofOutfits,
+                            osg::NodeVisitor& visitor)
 {
     for (unsigned int i = 0; i < crowd.getNumChildren(); ++i)
     {
         osg::Node& child = *childAt(crowd, i);
-        for (std::size_t times = dynamic_cast<SkinnedGeometry*>(&child) ? instances : 1; times > 0; --times)
+        const bool isMesh = dynamic_cast<SkinnedGeometry*>(&child) != nullptr;
+        if (isMesh && !ofOutfits.empty()) continue;
+        for (std::size_t times = isMesh ? instances.size() : 1; times > 0; --times)
             child.accept(visitor);
     }
+    for (std::size_t index = 0; index < instances.size() && !ofOutfits.empty(); ++index)
+        for (osg::Node* node : ofOutfits[instances.outfit(index)])
+            node->accept(visitor);
 }
 
 } // namespace osgGpuAnimation

@@ -7,6 +7,7 @@
 #include <osg/NodeVisitor>
 
 #include <cstddef>
+#include <vector>
 
 namespace osgGpuAnimation
 {
@@ -27,11 +28,16 @@ private:
     std::size_t _outer;
 };
 
+/// By the number of an outfit: the meshes that its instances show in place of the crowd's own. Empty: no outfits.
+using NodesOfOutfits = std::vector<std::vector<osg::Node*>>;
+
 /// The visitor visits the children with meshes once per instance, and the others once. Intersectors meet an instance
 /// only if they hit its sphere; hits have an InstanceMatrix.
-void visitInstances(const osg::Group& crowd, const CrowdInstances& instances, osg::NodeVisitor& visitor);
+void visitInstances(const osg::Group& crowd, const CrowdInstances& instances, const NodesOfOutfits& ofOutfits,
+                    osg::NodeVisitor& visitor);
 
-/// The visitor visits each mesh that many times, for statistics, and the other children once.
-void visitMeshesPerInstance(const osg::Group& crowd, std::size_t instances, osg::NodeVisitor& visitor);
+/// The visitor visits each mesh as often as instances show it, for statistics, and the other children once.
+void visitMeshesPerInstance(const osg::Group& crowd, const CrowdInstances& instances, const NodesOfOutfits& ofOutfits,
+                            osg::NodeVisitor& visitor);
 
 } // namespace osgGpuAnimation

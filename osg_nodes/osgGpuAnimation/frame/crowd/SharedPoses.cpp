@@ -374,7 +374,8 @@ std::shared_ptr<const PlacedInstances> SharedPoses::shared(std::shared_ptr<Place
 }
 
 std::vector<DrawState> SharedPoses::submit(PoseFrame& frame, const CrowdInstances& instances, const LodScale& scale,
-                                           const SeenMembers& seen, std::vector<std::uint32_t>& outOthers) const
+                                           const OutfitLists* lists, const SeenMembers& seen,
+                                           std::vector<std::uint32_t>& outOthers) const
 {
     const AnimationSet& set = *instances.set();
     const std::size_t placementTexels =
@@ -394,12 +395,7 @@ std::vector<DrawState> SharedPoses::submit(PoseFrame& frame, const CrowdInstance
     for (std::unique_ptr<PoseBatch>& batch :
          collection.makeBatches(maxPoses, [&] { return frame.makeBatch(instances.set()); }))
     {
-        struct Run
-        {
-            int level;
-            std::size_t first, count;
-        };
-        std::vector<Run> runs;
+        std::vector<OutfitLists::Run> runs;
         const std::shared_ptr<PlacedInstances> list = std::make_shared<PlacedInstances>();
         list->crowd = instances.identity();
         list->placements = instances.placements();
@@ -410,24 +406,28 @@ std::vector<DrawState> SharedPoses::submit(PoseFrame& frame, const CrowdInstance
                              runs.push_back({level, first, count});
                          });
         firstPose += batch->size();
+        if (lists) lists->arrange(instances, list->drawn, runs);
         const std::shared_ptr<const PlacedInstances> placed = shared(list);
         const std::size_t slot = frame.submitShared(std::move(batch), &instances, placed);
-        for (const Run& run : runs)
+        for (const OutfitLists::Run& run : runs)
+        {
             draws.push_back(frame.placedState(set, slot, placed, run.first, run.count, run.level));
+            draws.back().list = run.list;
+        }
     }
     return draws;
 }
 
 std::vector<DrawState> submitSeen(PoseFrame& frame, const CrowdInstances& instances, const LodScale& scale,
-                                  const SharedPoses* shared, const SeenMembers& seen)
+                                  const SharedPoses* shared, const OutfitLists* lists, const SeenMembers& seen)
 {
     static thread_local std::vector<std::uint32_t> others; // keeps its storage from cull to cull
     std::vector<DrawState> draws;
     if (shared && scale.isOn())
-        draws = shared->submit(frame, instances, scale, seen, others);
+        draws = shared->submit(frame, instances, scale, lists, seen, others);
     else
         seen.findIndices(instances.size(), others);
-    for (const DrawState& draw : submitSeen(frame, instances, CrowdLod(instances, scale), others))
+    for (const DrawState& draw : submitSeen(frame, instances, CrowdLod(instances, scale), lists, others))
         draws.push_back(draw);
     return draws;
 }

@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/animation/bounds/ClipTravel.h>
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
+#include <osgGpuAnimation/frame/crowd/OutfitLists.h>
 #include <osgGpuAnimation/frame/stage/LodSelection.h>
 #include <osgGpuAnimation/frame/stage/PoseFrame.h>
 #include <osgGpuAnimation/gpu/buffers/PlacedInstances.h>
@@ -39,9 +40,11 @@ public:
     void forgetUnused();
 
     /// Submits the visible instances that share poses to the frame and returns a state for each draw of the crowd's
-    /// meshes. outOthers: the indices of the others. scale: of the camera that culls. Cameras may cull concurrently.
+    /// meshes. outOthers: the indices of the others. scale: of the camera that culls. lists: of a crowd with outfits;
+    /// null: none. Cameras may cull concurrently.
     std::vector<DrawState> submit(PoseFrame& frame, const CrowdInstances& instances, const LodScale& scale,
-                                  const SeenMembers& seen, std::vector<std::uint32_t>& outOthers) const;
+                                  const OutfitLists* lists, const SeenMembers& seen,
+                                  std::vector<std::uint32_t>& outOthers) const;
 
 private:
     /// A mesh and what its vertices are.
@@ -79,8 +82,8 @@ private:
 };
 
 /// Submits the visible instances of a crowd to the frame and returns a state for each draw of the crowd's meshes.
-/// shared: of the crowd; null: no instances share poses.
+/// shared: of the crowd; null: no instances share poses. lists: of a crowd with outfits; null: none.
 std::vector<DrawState> submitSeen(PoseFrame& frame, const CrowdInstances& instances, const LodScale& scale,
-                                  const SharedPoses* shared, const SeenMembers& seen);
+                                  const SharedPoses* shared, const OutfitLists* lists, const SeenMembers& seen);
 
 } // namespace osgGpuAnimation

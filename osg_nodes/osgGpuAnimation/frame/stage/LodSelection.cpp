@@ -28,8 +28,9 @@ Result<void> LodRange::prepare(float pixels, const osg::Group& meshes, const Ani
     return {};
 }
 
-LodRange::LodRange(const osg::Group& meshes, const AnimationSet& set, std::shared_ptr<const CharacterLevels> merged)
-    : _merged(merged && merged->isOf(meshes, set) ? std::move(merged) : nullptr)
+LodRange::LodRange(const osg::Group& meshes, const AnimationSet& set, std::shared_ptr<const CharacterLevels> merged,
+                   const CharacterLevels::Lists& lists)
+    : _merged(merged && merged->isOf(meshes, set, lists) ? std::move(merged) : nullptr)
 {
     const auto add = [&](const auto& levels)
     {

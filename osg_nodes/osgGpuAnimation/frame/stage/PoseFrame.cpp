@@ -213,8 +213,11 @@ DrawState PoseFrame::placedState(const AnimationSet& set, std::size_t slot,
                                  std::size_t count, int level)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
-    const DrawState state = nextState(OfSharedPoses, !placed->tints.empty());
-    state.binding->setPlaced(_batchesOfSet[&set][slot]->content->sharedSet(), slot, placed, first, count);
+    const PoseBatch& batch = *_batchesOfSet[&set][slot]->content;
+    const bool isShared = !placed->placements.empty();
+    const DrawState state = nextState(isShared ? OfSharedPoses : OfListedPoses,
+                                      !(isShared ? placed->tints.empty() : batch.tints().empty()));
+    state.binding->setPlaced(batch.sharedSet(), slot, placed, first, count);
     state.binding->setLevel(level);
     return state;
 }
@@ -252,6 +255,7 @@ DrawState PoseFrame::nextState(Placements placements, bool isTinted)
         pool.states.back()->setAttribute(new PaletteBinding);
         if (placements == OfTransforms) pool.states.back()->setDefine("POSE_INSTANCED");
         if (placements == OfSharedPoses) pool.states.back()->setDefine("POSE_PLACED");
+        if (placements == OfListedPoses) pool.states.back()->setDefine("POSE_LISTED");
         if (isTinted) pool.states.back()->setDefine("POSE_TINTED");
     }
     osg::StateSet& state = *pool.states[pool.used++];
@@ -313,7 +317,7 @@ void PoseFrame::record(osg::Stats& stats, std::uint64_t evaluated) const
             count(batch->crowd, instance, batch->content->set());
     for (const Shared& shared : _shared)
         for (const PlacedInstances::Drawn& drawn : shared.placed->drawn)
-            count(shared.crowd, drawn.instance, *shared.set);
+            count(shared.crowd, drawn.index(), *shared.set);
     stats.setAttribute(_frameNumber, PoseStatistics::charactersSeen, static_cast<double>(seen));
     stats.setAttribute(_frameNumber, PoseStatistics::jointsSeen, static_cast<double>(joints));
     addTo(stats, _frameNumber, PoseStatistics::charactersEvaluated, static_cast<double>(evaluated));

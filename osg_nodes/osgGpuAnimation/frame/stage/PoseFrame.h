@@ -36,6 +36,7 @@ struct DrawState
 {
     osg::StateSet* stateSet;
     PaletteBinding* binding;
+    std::size_t list = 0; ///< of a crowd: the meshes to draw, see OutfitLists
 };
 
 /// The place of a batch that was submitted as a whole.
@@ -73,10 +74,10 @@ public:
     SubmittedBatch submit(std::unique_ptr<PoseBatch> batch, const void* crowd,
                           const std::vector<std::uint32_t>& instances);
 
-    /// Adds a batch of poses that instances of a crowd share, unless an equal one was submitted. Returns its slot.
+    /// Adds a batch of poses for the instances of a list, unless an equal one was submitted. Returns its slot.
     std::size_t submitShared(std::unique_ptr<PoseBatch> batch, const void* crowd,
                              std::shared_ptr<const PlacedInstances> placed);
-    /// A new state for [first, first + count) of the placed instances, with the poses of that slot.
+    /// A new state for [first, first + count) of the instances of a list, with the poses of that slot.
     DrawState placedState(const AnimationSet& set, std::size_t slot,
                           const std::shared_ptr<const PlacedInstances>& placed, std::size_t first, std::size_t count,
                           int level);
@@ -117,7 +118,7 @@ private:
         std::size_t targetCount;
         osg::StateSet* stateSet; ///< null: not created yet
     };
-    /// Instances with shared poses, for the statistics.
+    /// The instances of a list, for the statistics.
     struct Shared
     {
         const void* crowd;
@@ -148,6 +149,7 @@ private:
         OfPalette,
         OfTransforms, ///< of characters, which have no tints
         OfSharedPoses,
+        OfListedPoses, ///< of the palette, in the order of a list
     };
     DrawState nextState(Placements placements, bool isTinted);
 
@@ -164,7 +166,7 @@ private:
     std::vector<ConstraintTarget> _targets; ///< of the submitted instructions
     std::vector<Shared> _shared;
     std::shared_ptr<std::atomic<std::size_t>> _maxTexels; ///< the context's
-    std::array<std::array<StatePool, 2>, 3> _states;      ///< by the arguments of nextState()
+    std::array<std::array<StatePool, 2>, 4> _states;      ///< by the arguments of nextState()
 };
 
 } // namespace osgGpuAnimation

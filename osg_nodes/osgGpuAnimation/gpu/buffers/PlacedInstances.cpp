@@ -73,6 +73,7 @@ PlacedInstanceBuffers::Textures PlacedInstanceBuffers::textures(const std::share
     const std::size_t placementTexels =
         placed->placements.size() * SharedBlocks<AffineMatrix>::blockSize * POSE_TEXELS_PER_MATRIX;
     if (std::max(placementTexels, placed->drawn.size()) > maxTexels) return {};
+    if (placed->placements.empty()) return {listBuffer(placed).texture(), 0, 0};
     Crowd& crowd = _crowds[placed->crowd.get()];
     if (!crowd.placements.buffer)
         crowd = {placed->crowd,

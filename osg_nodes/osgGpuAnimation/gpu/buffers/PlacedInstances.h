@@ -5,6 +5,8 @@
 #include <osgGpuAnimation/gpu/buffers/SharedBlocks.h>
 #include <osgGpuAnimation/math/JointTransform.h>
 
+#include <layout.glsl>
+
 #include <osg/GLObjects>
 #include <osg/State>
 
@@ -16,20 +18,24 @@
 namespace osgGpuAnimation
 {
 
-/// Instances of a crowd that share poses, as skin.glsl draws them: a snapshot for one camera.
+/// Instances of a crowd in the order of their draws, as skin.glsl draws them: a snapshot for one camera. They share
+/// poses, or, without placements, have a pose each, whose palette has their placement.
 struct PlacedInstances
 {
     /// An instance: 8 bytes in each frame.
     struct Drawn
     {
-        std::uint32_t pose;     ///< index in the PoseBatch
-        std::uint32_t instance; ///< index in the placements and tints
+        std::uint32_t pose; ///< index in the PoseBatch
+        std::uint32_t
+            instance; ///< index in the crowd, so in the placements and tints; above it the number of its outfit
+
+        std::uint32_t index() const { return instance & POSE_DRAWN_INDEX_MASK; } ///< in the crowd
     };
 
     std::shared_ptr<const void> crowd;               ///< identifies the crowd, whose placements stay on the GPU
-    std::vector<Drawn> drawn;                        ///< level by level
+    std::vector<Drawn> drawn;                        ///< level by level, see OutfitLists
     std::size_t poseCount = 0;                       ///< above the poses of all
-    SharedBlocks<AffineMatrix>::Snapshot placements; ///< from the character's space to that of the draw
+    SharedBlocks<AffineMatrix>::Snapshot placements; ///< from the character's space to that of the draw; may be empty
     SharedBlocks<std::uint32_t>::Snapshot tints;     ///< see PoseBatch::setTint(); empty: all are white
 };
 
@@ -42,7 +48,7 @@ public:
     struct Textures
     {
         GLuint drawn = 0;      ///< RG32UI
-        GLuint placements = 0; ///< RGBA32F, three texels each
+        GLuint placements = 0; ///< RGBA32F, three texels each; 0: the palette has them
         GLuint tints = 0;      ///< RGBA8; 0: all are white
     };
 

@@ -200,7 +200,7 @@ void InstanceRuns::findPlaced()
     }
     _placed = {palette, _binding.getInstanceCount()};
     _placed.place.instance = static_cast<int>(_binding.getInstance());
-    _placed.place.tints = _textures.tints;
+    if (_textures.placements != 0) _placed.place.tints = _textures.tints;
 }
 
 InstanceRuns::Run InstanceRuns::at(std::size_t first) const
@@ -251,7 +251,7 @@ void InstanceRuns::usePlaced() const
         if (location >= 0) _state.get<osg::GLExtensions>()->glUniform1i(location, unit);
     };
     bind(drawnName, POSE_DRAWN_UNIT, _textures.drawn);
-    bind(placementsName, POSE_PLACEMENT_UNIT, _textures.placements);
+    if (_textures.placements != 0) bind(placementsName, POSE_PLACEMENT_UNIT, _textures.placements);
 }
 
 void InstanceRuns::useTransforms(std::size_t first) const
@@ -277,10 +277,12 @@ void InstanceRuns::usePiece(std::size_t first) const
     osg::Matrixd toEye = _view;
     if (const PlacedInstances* placed = _binding.getPlaced().get())
     {
-        const auto [ofPose, instance] = placed->drawn[pose];
+        const PlacedInstances::Drawn& drawn = placed->drawn[pose];
         constexpr std::size_t blockSize = SharedBlocks<AffineMatrix>::blockSize;
-        toEye.preMult(toOsg(placed->placements[instance / blockSize]->elements[instance % blockSize]));
-        pose = ofPose;
+        const std::size_t block = drawn.index() / blockSize;
+        if (block < placed->placements.size())
+            toEye.preMult(toOsg(placed->placements[block]->elements[drawn.index() % blockSize]));
+        pose = drawn.pose;
     }
     else if (_binding.getSerial() != 0)
     {

@@ -46,7 +46,7 @@ void setOutset(osg::State& state, float outset);
 /// RAII: the instances of a PaletteBinding for the draws of one mesh, as runs that one draw each shows. Where their
 /// placements come from:
 /// - consecutive instances of the batch: the palette has them;
-/// - instances with shared poses: buffer textures, with the placements of all instances of the crowd;
+/// - instances of a list: buffer textures, with the placements of all instances of the crowd if they share poses;
 /// - characters that are drawn together: vertex attributes with a divisor (faster in llvmpipe than a fetch by index).
 ///   Programs that do not link skin.glsl get one draw per character, with its placement in the model-view matrix.
 class InstanceRuns
@@ -90,7 +90,7 @@ private:
     osg::State& _state;
     const PosePipeline& _pipeline;
     const PaletteBinding& _binding;
-    Run _placed; ///< of instances with shared poses
+    Run _placed; ///< of a list
     PlacedInstanceBuffers::Textures _textures;
     const BufferTexture* _transforms = nullptr; ///< null: one draw per character
     bool _isSkinned = true;

@@ -30,11 +30,10 @@ public:
     /// Selects instanceCount consecutive instances at the draw's own model-view matrix, with all triangles.
     void set(std::shared_ptr<const AnimationSet> set, std::size_t slot, std::size_t instance,
              std::size_t instanceCount = 1);
-    /// Selects instances of a crowd that share poses: [first, first + count) of placed.drawn, whose poses are indices
-    /// of the batch.
+    /// Selects instances of a crowd: [first, first + count) of placed.drawn, whose poses are indices of the batch.
     void setPlaced(std::shared_ptr<const AnimationSet> set, std::size_t slot,
                    std::shared_ptr<const PlacedInstances> placed, std::size_t first, std::size_t count);
-    const std::shared_ptr<const PlacedInstances>& getPlaced() const { return _placed; } ///< null: poses are not shared
+    const std::shared_ptr<const PlacedInstances>& getPlaced() const { return _placed; } ///< null: there is no list
     /// The level of detail; set() and setInstanced() reset it to all triangles.
     void setLevel(int level) { _level = level; }
     int getLevel() const { return _level; }

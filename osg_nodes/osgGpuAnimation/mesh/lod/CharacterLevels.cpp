@@ -68,28 +68,40 @@ bool CharacterLevels::Part::isOf(const SkinnedGeometry& present) const
                       { return set == known.set && (!set || set->getModifiedCount() == known.modifiedCount); });
 }
 
-bool CharacterLevels::isOf(const osg::Group& meshes, const AnimationSet& set) const
+/// Of the mesh of that number.
+static std::size_t listAt(const CharacterLevels::Lists& lists, std::size_t mesh)
+{
+    return mesh < lists.size() ? lists[mesh] : 0;
+}
+
+bool CharacterLevels::isOf(const osg::Group& meshes, const AnimationSet& set, const Lists& lists) const
 {
     bool isSame = &set == _set;
     std::size_t count = 0;
     forEachMesh(meshes,
                 [&](const SkinnedGeometry& mesh)
                 {
-                    isSame = isSame && count < _parts.size() && _parts[count].isOf(mesh);
+                    isSame = isSame && count < _parts.size() && _parts[count].isOf(mesh) &&
+                             _parts[count].list == listAt(lists, count);
                     ++count;
                 });
     return isSame && count == _parts.size();
 }
 
-std::vector<CharacterLevels::Part> CharacterLevels::partsOf(const osg::Group& meshes)
+std::vector<CharacterLevels::Part> CharacterLevels::partsOf(const osg::Group& meshes, const Lists& lists)
 {
     std::vector<Part> parts;
-    forEachMesh(meshes, [&](const SkinnedGeometry& mesh) { parts.emplace_back(mesh); });
+    forEachMesh(meshes,
+                [&](const SkinnedGeometry& mesh)
+                {
+                    parts.emplace_back(mesh);
+                    parts.back().list = listAt(lists, parts.size() - 1);
+                });
     return parts;
 }
 
-CharacterLevels::CharacterLevels(const osg::Group& meshes, const AnimationSet& set)
-    : CharacterLevels(partsOf(meshes), set)
+CharacterLevels::CharacterLevels(const osg::Group& meshes, const AnimationSet& set, const Lists& lists)
+    : CharacterLevels(partsOf(meshes, lists), set)
 {
     std::size_t vertices = 0;
     for (const Part& part : _parts)
@@ -100,9 +112,13 @@ CharacterLevels::CharacterLevels(const osg::Group& meshes, const AnimationSet& s
     {
         const SkinnedGeometry& mesh = *_parts[part].mesh;
         if (!MergedParts::accepts(mesh)) continue;
-        const auto alike = std::find_if(groups.begin(), groups.end(),
-                                        [&](const Indices& group)
-                                        { return MergedParts::areAlike(*_parts[group.front()].mesh, mesh); });
+        const auto alike =
+            std::find_if(groups.begin(), groups.end(),
+                         [&](const Indices& group)
+                         {
+                             const Part& first = _parts[group.front()];
+                             return first.list == _parts[part].list && MergedParts::areAlike(*first.mesh, mesh);
+                         });
         if (alike == groups.end())
             groups.push_back({part});
         else
@@ -159,10 +175,11 @@ void CharacterLevels::include(Merged merged)
     _merged.push_back(std::move(merged));
 }
 
-Result<std::shared_ptr<const CharacterLevels>>
-CharacterLevels::restored(const osg::Group& meshes, const AnimationSet& set, std::vector<Merged> merged)
+Result<std::shared_ptr<const CharacterLevels>> CharacterLevels::restored(const osg::Group& meshes,
+                                                                         const AnimationSet& set,
+                                                                         std::vector<Merged> merged, const Lists& lists)
 {
-    const std::shared_ptr<CharacterLevels> levels(new CharacterLevels(partsOf(meshes), set));
+    const std::shared_ptr<CharacterLevels> levels(new CharacterLevels(partsOf(meshes, lists), set));
     for (std::size_t i = 0; i < merged.size(); ++i)
         if (const Result<void> taken = levels->restore(std::move(merged[i])); !taken)
             return Error{"merged parts " + std::to_string(i) + ": " + taken.error().message};
@@ -178,6 +195,8 @@ Result<void> CharacterLevels::restore(Merged merged)
             return Error{"part " + std::to_string(part) + " of " + std::to_string(_parts.size())};
         if (isMerged(*_parts[part].mesh, std::numeric_limits<int>::max()))
             return Error{"part " + std::to_string(part) + " a second time"};
+        if (_parts[part].list != _parts[merged.parts.front()].list)
+            return Error{"part " + std::to_string(part) + ", which other outfits show"};
         first = part + 1;
     }
     if (merged.parts.empty() || merged.steps.empty()) return Error{"no parts or no levels"};

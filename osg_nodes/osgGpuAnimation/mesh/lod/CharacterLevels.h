@@ -26,8 +26,12 @@ public:
     static constexpr std::size_t maxParts = 256;          ///< a character of more has no such levels
     static constexpr std::size_t maxVertices = 1'000'000; ///< a character of more has no such levels
 
+    /// By mesh, in the order of forEachMesh(): which meshes are drawn for the same instances. Only these are merged.
+    /// Empty: all are.
+    using Lists = std::vector<std::size_t>;
+
     /// Creates the levels of the meshes among the group's children (see forEachMesh()) in 1 to 10 s.
-    CharacterLevels(const osg::Group& meshes, const AnimationSet& set);
+    CharacterLevels(const osg::Group& meshes, const AnimationSet& set, const Lists& lists = {});
 
     struct Step
     {
@@ -46,11 +50,11 @@ public:
     /// The levels that a file contains. merged: from merged() of the same meshes. They are untrusted, except for the
     /// steps' meshes: an error names the first element that does not fit.
     static Result<std::shared_ptr<const CharacterLevels>> restored(const osg::Group& meshes, const AnimationSet& set,
-                                                                   std::vector<Merged> merged);
+                                                                   std::vector<Merged> merged, const Lists& lists = {});
     const std::vector<Merged>& merged() const { return _merged; }
 
-    /// True if the group has the same visible meshes with the same vertices, primitives and StateSets.
-    bool isOf(const osg::Group& meshes, const AnimationSet& set) const;
+    /// True if the group has the same visible meshes with the same vertices, primitives, StateSets and lists.
+    bool isOf(const osg::Group& meshes, const AnimationSet& set, const Lists& lists = {}) const;
 
     /// The finest and the coarsest level; allTriangles: there are none.
     int finest() const { return _finest; }
@@ -60,8 +64,9 @@ public:
     /// True if a merged mesh shows the part at the level.
     bool isMerged(const SkinnedGeometry& part, int level) const;
 
-    /// function(const SkinnedGeometry&), for the meshes to draw at a level in place of the group's: merged ones with
-    /// all their triangles, and parts at the level. meshes: isOf() is true for it.
+    /// function(const SkinnedGeometry& mesh, const SkinnedGeometry& part), for the meshes to draw at a level in place
+    /// of the group's: merged ones with all their triangles, and parts at the level. part: the first one that the mesh
+    /// shows. meshes: isOf() is true for it.
     template <typename Function>
     void forEachMeshAt(int level, const osg::Group& meshes, Function function) const;
 
@@ -87,10 +92,11 @@ private:
         std::vector<Primitives> primitives;
         osg::ref_ptr<const osg::StateSet> state;
         osg::Node::NodeMask mask;
+        std::size_t list = 0;
     };
     using Indices = std::vector<std::size_t>; ///< of parts
 
-    static std::vector<Part> partsOf(const osg::Group& meshes);
+    static std::vector<Part> partsOf(const osg::Group& meshes, const Lists& lists);
     CharacterLevels(std::vector<Part> parts, const AnimationSet& set) : _set(&set), _parts(std::move(parts)) {}
     Result<void> restore(Merged merged);
     void merge(const Indices& indices, const AnimationSet& set, const std::vector<std::vector<AffineMatrix>>& palettes,
@@ -110,10 +116,10 @@ void CharacterLevels::forEachMeshAt(int level, const osg::Group& meshes, Functio
     forEachMesh(meshes,
                 [&](const SkinnedGeometry& mesh)
                 {
-                    if (!isMerged(mesh, level)) function(mesh);
+                    if (!isMerged(mesh, level)) function(mesh, mesh);
                 });
     for (const Merged& merged : _merged)
-        if (const Step* step = merged.at(level)) function(*step->mesh);
+        if (const Step* step = merged.at(level)) function(*step->mesh, *_parts[merged.parts.front()].mesh);
 }
 
 } // namespace osgGpuAnimation

@@ -22,6 +22,16 @@ const CrowdInstances& CrowdDetail::instances(const AnimatedCrowd& crowd)
     return *crowd._instances;
 }
 
+const osg::Group& CrowdDetail::drawnMeshes(const AnimatedCrowd& crowd)
+{
+    return crowd._meshes.drawn();
+}
+
+const std::vector<std::size_t>& CrowdDetail::lists(const AnimatedCrowd& crowd)
+{
+    return crowd._meshes.lists();
+}
+
 const std::shared_ptr<const CharacterLevels>& CrowdDetail::levels(const AnimatedCrowd& crowd)
 {
     return crowd._meshes._levels;

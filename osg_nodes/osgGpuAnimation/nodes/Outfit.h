@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osg/Image>
+#include <osg/Matrixd>
+#include <osg/Node>
+#include <osg/Object>
+#include <osg/Vec4>
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+/// What some instances of an AnimatedCrowd show: which parts, in which materials, with which props. Instances of all
+/// outfits share poses, levels of detail and draws.
+///
+///     osg::ref_ptr<Outfit> guard = new Outfit;
+///     guard->setVisible("Hood", false);                                     // a part, by the name of its node
+///     guard->setColor("Coat", osg::Vec4(0.5, 0.2, 0.2, 1));                 // a material; the skin keeps its colour
+///     guard->addProp("Head", osgDB::readRefNodeFile("helmet.glb"));
+///     if (auto added = crowd->addOutfit(guard); !added) std::cerr << added.error().message << "\n";
+///     crowd->setOutfit(instance, guard);
+///
+/// Names of parts are those of CharacterMeshes::find(), names of materials those of StateSets. Garments are parts: let
+/// the character wear() them before the crowd is made of it.
+///
+/// AnimatedCrowd::addOutfit() checks an outfit against the crowd. Pass it to AnimatedCrowd::replaceOutfit() after later
+/// changes. Several crowds may have the same outfit. OSG's own formats keep outfits with their crowds.
+class Outfit : public osg::Object
+{
+public:
+    /// A rigid model on a joint.
+    struct Prop
+    {
+        std::string joint;
+        osg::ref_ptr<osg::Node> node;
+        osg::Matrixd toJoint; ///< from the node's space to the joint's
+
+        bool operator==(const Prop& other) const
+        {
+            return joint == other.joint && node == other.node && toJoint == other.toJoint;
+        }
+    };
+
+    Outfit() = default; ///< shows what the crowd shows
+    /// Shares pictures and props, or copies them as copyop says.
+    Outfit(const Outfit& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
+    META_Object(osgGpuAnimation, Outfit)
+
+    /// Shows or hides a part, whether or not the crowd shows it.
+    void setVisible(const std::string& part, bool isVisible) { _visibility[part] = isVisible; }
+    const std::map<std::string, bool>& getVisibility() const { return _visibility; } ///< by part
+
+    /// Shows all parts in a variant of the file's materials, see CharacterMeshes::setVariant(). Empty (the default): in
+    /// that of the crowd.
+    void setVariant(const std::string& name) { _variant = name; }
+    const std::string& getVariant() const { return _variant; } ///< see setVariant()
+
+    /// Multiplies the colour of a material. color: as displayed, not linear; each component in [0, 1]; the tint of an
+    /// instance multiplies it, too.
+    void setColor(const std::string& material, const osg::Vec4& color) { _colors[material] = color; }
+    const std::map<std::string, osg::Vec4>& getColors() const { return _colors; } ///< by material
+
+    /// Replaces the base-colour texture of a material. Parts of that material need a draw for each picture.
+    void setPicture(const std::string& material, osg::Image* picture) { _pictures[material] = picture; }
+    const std::map<std::string, osg::ref_ptr<osg::Image>>& getPictures() const { return _pictures; } ///< by material
+
+    /// Adds the geometries below a node as parts that follow a joint, at the cost of other parts; JointAttachment is
+    /// for nodes with callbacks or lights of their own. A prop of several outfits is the same part if joint, node and
+    /// matrix are equal. joint: the name of one that moves a mesh of the crowd. toJoint: from the node's space to the
+    /// joint's.
+    void addProp(const std::string& joint, osg::Node* node, const osg::Matrixd& toJoint = osg::Matrixd());
+    const std::vector<Prop>& getProps() const { return _props; } ///< in the order of addProp()
+
+protected:
+    ~Outfit() override = default;
+
+private:
+    std::map<std::string, bool> _visibility;
+    std::string _variant;
+    std::map<std::string, osg::Vec4> _colors;
+    std::map<std::string, osg::ref_ptr<osg::Image>> _pictures;
+    std::vector<Prop> _props;
+};
+
+} // namespace osgGpuAnimation

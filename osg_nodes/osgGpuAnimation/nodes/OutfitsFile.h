@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/math/Result.h>
+#include <osgGpuAnimation/nodes/Outfit.h>
+
+#include <string>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+/// An outfit with the instances that wear it.
+struct OutfitShare
+{
+    osg::ref_ptr<Outfit> outfit;
+    double share = 1.0; ///< of the instances, relative to those of the other outfits; at least 0
+    double size = 1.0;  ///< the uniform scale of its instances, above 0
+};
+
+/// Reads outfits from a short JSON file (people.outfits.json), for AnimatedCrowd::addOutfit():
+///
+///     {
+///       "outfits": [
+///         { "name": "pilgrim", "share": 2, "hide": ["Lantern", "Cap"], "colors": { "Coat": "#7a5c3a" } },
+///         { "name": "child", "size": 0.75, "show": ["Hood"], "variant": "winter",
+///           "pictures": { "Shirt": "stripes.png" },
+///           "props": [ { "joint": "Head", "file": "hat.glb", "offset": [0, 0.1, 0] } ] }
+///       ]
+///     }
+///
+/// hide, show: names of parts, one or an array. colors: by material, "#rrggbb" as displayed. pictures, and the files of
+/// props: relative to the folder of the file, not above it. offset: of the prop's origin, in the joint's space; default
+/// 0. Missing members have the defaults of Outfit and OutfitShare.
+///
+/// Errors start with the name of the file and name the member: invalid JSON; more than 64 KiB or 256 nested levels; a
+/// member of a wrong type or an unknown name; a duplicate or missing member; a file that cannot be read; no outfits; a
+/// share below 0, or shares that are all 0; a size that is not above 0. Whether a crowd has the parts and materials is
+/// for addOutfit().
+Result<std::vector<OutfitShare>> readOutfitsFile(const std::string& file);
+
+} // namespace osgGpuAnimation

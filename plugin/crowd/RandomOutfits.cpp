@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include "crowd/RandomOutfits.h"
+
+#include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <random>
+#include <set>
+#include <string>
+
+namespace osgGpuAnimation::crowd
+{
+
+namespace
+{
+
+/// Random in [0, 1), the same with every standard library.
+float share(std::mt19937& random)
+{
+    return static_cast<float>(random() >> 8) / 16777216.0f;
+}
+
+/// hue: in [0, 1). saturation, value: in [0, 1].
+osg::Vec4 colorOf(float hue, float saturation, float value)
+{
+    const auto channel = [&](float shift)
+    {
+        const float place = std::fmod(hue * 6.0f + shift, 6.0f);
+        return value - value * saturation * std::clamp(std::min(place, 4.0f - place), 0.0f, 1.0f);
+    };
+    return {channel(5.0f), channel(3.0f), channel(1.0f), 1.0f};
+}
+
+} // namespace
+
+std::vector<OutfitShare> randomOutfits(const AnimatedCrowd& crowd, std::uint32_t seed)
+{
+    const std::vector<PaletteEntry>& palette = crowd.getAnimationSet().palette();
+    std::map<int, std::set<std::string>> partsOfJoint;
+    std::set<std::string> materials;
+    forEachMesh(crowd,
+                [&](const SkinnedGeometry& mesh)
+                {
+                    const auto entry = static_cast<std::size_t>(mesh.getRigidEntry()); // -1 becomes huge
+                    if (entry < palette.size() && !mesh.getName().empty())
+                        partsOfJoint[palette[entry].joint].insert(mesh.getName());
+                    if (mesh.getStateSet() && !mesh.getStateSet()->getName().empty())
+                        materials.insert(mesh.getStateSet()->getName());
+                });
+    std::mt19937 random(seed);
+    std::vector<OutfitShare> outfits;
+    for (std::size_t i = 0; i < randomOutfitCount; ++i)
+    {
+        outfits.push_back({new Outfit});
+        outfits.back().outfit->setName("random " + std::to_string(i + 1));
+        for (const auto& [joint, parts] : partsOfJoint)
+        {
+            std::size_t chosen = random() % (parts.size() + 1); // the last: none
+            for (const std::string& part : parts)
+                outfits.back().outfit->setVisible(part, chosen-- == 0);
+        }
+        for (const std::string& material : materials)
+            if (materials.size() > 1)
+                outfits.back().outfit->setColor(
+                    material, colorOf(share(random), 0.15f + 0.35f * share(random), 0.75f + 0.25f * share(random)));
+    }
+    return outfits;
+}
+
+} // namespace osgGpuAnimation::crowd

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/OutfitsFile.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace osgGpuAnimation::crowd
+{
+
+constexpr std::size_t randomOutfitCount = 24;
+
+/// Outfits for the option `outfits=random`. Rigid parts on one joint exclude each other: an outfit shows one of them or
+/// none. If the crowd has several materials, each gets a pale colour of a random hue.
+std::vector<OutfitShare> randomOutfits(const AnimatedCrowd& crowd, std::uint32_t seed);
+
+} // namespace osgGpuAnimation::crowd

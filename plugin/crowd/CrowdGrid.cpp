@@ -2,6 +2,7 @@
 #include "crowd/CrowdGrid.h"
 
 #include "crowd/RandomOutfits.h"
+#include "crowd/RandomShare.h"
 #include "gltf/file/ProgressLine.h"
 #include "gltf/file/Report.h"
 
@@ -74,19 +75,13 @@ bool hasStillMeshes(osg::Node& model)
     return visitUntil(model, [&](osg::Node& node) { return node.asGeometry() && !findAbove(node, isCharacter); });
 }
 
-/// Random in [0, 1), the same with every standard library (std::uniform_real_distribution is not).
-double share(std::mt19937& random)
-{
-    return static_cast<double>(random()) / 4294967296.0;
-}
-
 AnimationController randomController(const AnimatedCrowd& crowd, const std::vector<std::size_t>& clips,
                                      std::mt19937& random)
 {
     AnimationController controller(crowd.getSharedAnimationSet());
     if (clips.empty()) return controller;
-    const auto choice = static_cast<std::size_t>(share(random) * static_cast<double>(clips.size()));
-    if (controller.play(clips[choice])) controller.seek(share(random) * controller.duration());
+    const auto choice = static_cast<std::size_t>(randomShare(random) * static_cast<double>(clips.size()));
+    if (controller.play(clips[choice])) controller.seek(randomShare(random) * controller.duration());
     return controller;
 }
 
@@ -109,7 +104,7 @@ const OutfitShare& randomOutfit(const std::vector<OutfitShare>& outfits, std::mt
     double all = 0.0;
     for (const OutfitShare& each : outfits)
         all += each.share;
-    double place = share(random) * all;
+    double place = randomShare(random) * all;
     for (const OutfitShare& each : outfits)
         if ((place -= each.share) < 0.0) return each;
     return outfits.back();

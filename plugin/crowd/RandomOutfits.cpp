@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "crowd/RandomOutfits.h"
 
+#include "crowd/RandomShare.h"
+
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 
 #include <algorithm>
@@ -16,12 +18,6 @@ namespace osgGpuAnimation::crowd
 
 namespace
 {
-
-/// Random in [0, 1), the same with every standard library.
-float share(std::mt19937& random)
-{
-    return static_cast<float>(random() >> 8) / 16777216.0f;
-}
 
 /// hue: in [0, 1). saturation, value: in [0, 1].
 osg::Vec4 colorOf(float hue, float saturation, float value)
@@ -51,6 +47,7 @@ std::vector<OutfitShare> randomOutfits(const AnimatedCrowd& crowd, std::uint32_t
                         materials.insert(mesh.getStateSet()->getName());
                 });
     std::mt19937 random(seed);
+    const auto share = [&] { return static_cast<float>(randomShare(random)); };
     std::vector<OutfitShare> outfits;
     for (std::size_t i = 0; i < randomOutfitCount; ++i)
     {
@@ -64,8 +61,8 @@ std::vector<OutfitShare> randomOutfits(const AnimatedCrowd& crowd, std::uint32_t
         }
         for (const std::string& material : materials)
             if (materials.size() > 1)
-                outfits.back().outfit->setColor(
-                    material, colorOf(share(random), 0.15f + 0.35f * share(random), 0.75f + 0.25f * share(random)));
+                outfits.back().outfit->setColor(material,
+                                                colorOf(share(), 0.15f + 0.35f * share(), 0.75f + 0.25f * share()));
     }
     return outfits;
 }

@@ -275,6 +275,8 @@ void CommandLine::addRender()
                                std::string(anyModel) + "; or a crowd of it: FILE.20x20.crowd", _render);
     app.add_option("--clip", _render.clip,
                    "A clip's name, or an animation's number where none has that name; default: the first clip");
+    app.add_option("--outfits", _render.outfits, "Of a crowd: an outfits file (JSON), or random")
+        ->type_name("FILE|random");
     app.add_option("--variant", _render.variant,
                    "A variant of the file's materials: its name, or its number where none has that name; "
                    "default: none");

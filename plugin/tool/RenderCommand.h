@@ -25,6 +25,7 @@ struct RenderCommand : ModelArguments ///< or a crowd of it: `fox.glb.20x20.crow
     std::optional<std::string> clip;    ///< name or animation number; default: the first; of a crowd: all, at random
     std::optional<std::string> camera;  ///< of the file: name or number; default: none
     std::optional<std::string> variant; ///< of the file's materials: name or number; default: none
+    std::string outfits;                ///< of a crowd: the name of an outfits file, or "random"; empty: none
     double time = 0.0;                  ///< seconds; clips loop
     int width = 800;                    ///< pixels, [1, maxSize]
     int height = 600;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "crowd/CrowdGrid.h"
 
-#include "gltf/file/ProgressLine.h"
 #include "gltf/file/Report.h"
 
 #include <osgGpuAnimation/frame/PoseStatistics.h>
@@ -125,11 +124,8 @@ Result<osg::ref_ptr<AnimatedCrowd>> makeCrowd(osg::Node& model, const CrowdOptio
         if (!added) return added.error();
     }
     if (options.pixelError)
-    {
-        const gltf::ProgressLine progress("computing levels of detail");
         if (const Result<void> taken = crowd->getMeshes().setPixelError(*options.pixelError); !taken)
             return taken.error();
-    }
     crowd->addEventCallback(new PoseStatistics);
     return crowd;
 }

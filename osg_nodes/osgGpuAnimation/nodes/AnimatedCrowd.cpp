@@ -391,7 +391,7 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
 void AnimatedCrowd::prepareSharedPoses()
 {
     if (_sharedPoses) _sharedPoses->forgetUnused();
-    _meshes.createLevels();
+    _meshes.updateLevels();
     const bool isOn = _meshes.getPixelError() > 0.0f && getAnimationSet().paletteSize() > 0;
     if (isOn && (!_sharedPoses || !_sharedPoses->isOf(*this))) // kept for the next pixel error
         _sharedPoses = std::make_unique<SharedPoses>(*this, getAnimationSet());

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 # What .ci/run runs under the sanitizers, as one program with nothing more to compile: sanitized.ViewersGLTest…
 # With ThreadSanitizer what has several threads, with AddressSanitizer also what clones, releases, keeps and reads.
-set(sanitized_sources nodes/TestCharacter.cpp frame/NestedCameraGLTest.cpp nodes/ViewersGLTest.cpp
+set(sanitized_sources nodes/TestCharacter.cpp mesh/Tube.cpp nodes/BackgroundLevelsTest.cpp
+    frame/NestedCameraGLTest.cpp nodes/ViewersGLTest.cpp
     plugin/PagerGLTest.cpp plugin/ConcurrentLoadsTest.cpp gltf/ModelBuilder.cpp)
 if(OSGGPUANIMATION_SANITIZER STREQUAL address)
     list(APPEND sanitized_sources nodes/AnimatedCharacterGLTest.cpp nodes/AnimatedCrowdGLTest.cpp

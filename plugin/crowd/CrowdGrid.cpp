@@ -3,7 +3,6 @@
 
 #include "crowd/RandomOutfits.h"
 #include "crowd/RandomShare.h"
-#include "gltf/file/ProgressLine.h"
 #include "gltf/file/Report.h"
 
 #include <osgGpuAnimation/frame/PoseStatistics.h>
@@ -151,11 +150,8 @@ Result<osg::ref_ptr<AnimatedCrowd>> makeCrowd(osg::Node& model, const CrowdOptio
         if (const Result<void> taken = crowd->setOutfit(added.value(), worn.outfit); !taken) return taken.error();
     }
     if (options.pixelError)
-    {
-        const gltf::ProgressLine progress("computing levels of detail");
         if (const Result<void> taken = crowd->getMeshes().setPixelError(*options.pixelError); !taken)
             return taken.error();
-    }
     crowd->addEventCallback(new PoseStatistics);
     return crowd;
 }

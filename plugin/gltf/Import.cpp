@@ -4,7 +4,6 @@
 #include "gltf/data/LoadDocument.h"
 #include "gltf/data/MaterialVariants.h"
 #include "gltf/file/Elements.h"
-#include "gltf/file/ProgressLine.h"
 #include "gltf/import/ClipFiles.h"
 #include "gltf/import/Clips.h"
 #include "gltf/import/Drawables.h"
@@ -247,7 +246,6 @@ Result<void> Importer::finishClips()
         _result.set = _result.character->getController().sharedSet();
     }
     _result.character->computeClipBounds();
-    const ProgressLine progress("computing levels of detail");
     return _result.character->getMeshes().setPixelError(static_cast<float>(_options.pixelError));
 }
 

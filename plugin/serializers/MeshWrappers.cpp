@@ -8,7 +8,10 @@
 #include <osgGpuAnimation/mesh/detail/MeshDetail.h>
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
+#include <osg/LOD>
 #include <osg/Notify>
 
 #include <algorithm>
@@ -57,6 +60,23 @@ void transferMorphTargets(ValueStream& stream, SkinnedGeometry& mesh)
     if (stream.hasRead()) mesh.setMorphTargets(morph, entry, std::move(targets));
 }
 
+/// Waits for the levels that characters and crowds with the mesh are making.
+void waitForLevels(const osg::Node& mesh)
+{
+    for (osg::Group* parent : mesh.getParents())
+    {
+        if (auto* character = dynamic_cast<AnimatedCharacter*>(parent)) character->getMeshes().waitForLevels();
+        if (auto* crowd = dynamic_cast<AnimatedCrowd*>(parent)) crowd->getMeshes().waitForLevels();
+        if (dynamic_cast<const osg::LOD*>(parent)) waitForLevels(*parent);
+    }
+}
+
+bool hasLevels(const SkinnedGeometry& mesh)
+{
+    waitForLevels(mesh);
+    return MeshDetail::findLevels(mesh) != nullptr;
+}
+
 void transferLevels(ValueStream& stream, SkinnedGeometry& mesh)
 {
     stream.begin();
@@ -78,8 +98,7 @@ void addMeshProperties(osgDB::ObjectWrapper* wrapper)
     addProperty(wrapper, "Influences", &transferInfluences);
     addProperty<SkinnedGeometry>(wrapper, "MorphTargets", &transferMorphTargets,
                                  [](const SkinnedGeometry& mesh) { return !mesh.getMorphTargets().empty(); });
-    addProperty<SkinnedGeometry>(wrapper, "LodLevels", &transferLevels,
-                                 [](const SkinnedGeometry& mesh) { return MeshDetail::findLevels(mesh) != nullptr; });
+    addProperty<SkinnedGeometry>(wrapper, "LodLevels", &transferLevels, &hasLevels);
     wrapper->addFinishedObjectReadCallback(new MipmapsAfterReading);
 }
 

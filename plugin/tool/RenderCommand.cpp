@@ -79,6 +79,12 @@ std::vector<osg::Vec3d> pointsOf(const gltf::ImportedModel& model, const std::ve
     return points;
 }
 
+void waitForLevels(CharacterMeshes& meshes)
+{
+    const gltf::ProgressLine progress("computing levels of detail");
+    meshes.waitForLevels();
+}
+
 std::string numbered(const std::string& output, std::size_t number)
 {
     const std::filesystem::path path(output);
@@ -204,6 +210,7 @@ Result<void> RenderCommand::drawModel(PictureViewer& viewer, const gltf::Importe
 {
     const std::vector<double> posed = turntable ? std::vector<double>{time} : times();
     if (const Result<void> shown = show(viewer, *model.root, pointsOf(model, posed)); !shown) return shown;
+    if (model.character) waitForLevels(model.character->getMeshes());
     if (model.startCamera) viewer.lookThrough(*model.startCamera);
     return drawPictures(viewer,
                         [&](double seconds)
@@ -220,6 +227,7 @@ Result<void> RenderCommand::drawCrowd(PictureViewer& viewer, osg::Node& model, c
     osg::ref_ptr<osg::Group> scene = new osg::Group;
     scene->addChild(crowd.value());
     if (const Result<void> shown = show(viewer, *scene, osgGpuAnimation::pointsOf(*scene)); !shown) return shown;
+    waitForLevels(crowd.value()->getMeshes());
     viewer.draw(0.0); // the time from which the clips run
     return drawPictures(viewer, [](double seconds) { return seconds; });
 }

@@ -72,6 +72,7 @@ osg::ref_ptr<AnimatedCrowd> makeField(const Subject& subject, std::size_t step =
 {
     osg::ref_ptr<AnimatedCrowd> crowd = &Field(subject, step).node();
     taken(crowd->getMeshes().setPixelError(fieldPixelError));
+    crowd->getMeshes().waitForLevels();
     return crowd;
 }
 
@@ -123,6 +124,7 @@ void measureMixed(const std::vector<Subject>& subjects, Run& run)
     {
         fields.emplace_back(subjects[kind], subjects.size(), kind);
         taken(fields.back().node().getMeshes().setPixelError(fieldPixelError));
+        fields.back().node().getMeshes().waitForLevels();
         root->addChild(&fields.back().node());
     }
     walk(0.0);
@@ -290,6 +292,7 @@ void comparePictures(const Subject& subject, int pixels, Report& report)
     for (const float error : {0.0f, samples * fieldPixelError})
     {
         taken(wall->getMeshes().setPixelError(error));
+        wall->getMeshes().waitForLevels();
         for (int frame = 0; frame < 2; ++frame)
             viewer.frameAt(0.0);
         pictures.push_back(pictureOf(viewer, width, samples));
@@ -335,6 +338,7 @@ void compareRows(const Subject& subject, Report& report)
     for (const float error : {0.0f, fieldPixelError})
     {
         taken(field.node().getMeshes().setPixelError(error));
+        field.node().getMeshes().waitForLevels();
         viewer.frameAt(0.0);
         rows.push_back(brightnessOfRows(pictureOf(viewer, width, 1)));
     }

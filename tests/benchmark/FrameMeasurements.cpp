@@ -160,7 +160,11 @@ void measureCrowd(const Subject& subject, Run& run)
     const auto raced = [&](std::size_t count, int rounds, bool hasNodes)
     {
         const osg::ref_ptr<AnimatedCrowd> all = makeCrowd(subject, count), fewer = makeCrowd(subject, count);
-        const auto setPixelError = [&](float pixels) { taken(fewer->getMeshes().setPixelError(pixels)); };
+        const auto setPixelError = [&](float pixels)
+        {
+            taken(fewer->getMeshes().setPixelError(pixels));
+            fewer->getMeshes().waitForLevels();
+        };
         setPixelError(pixelError);
         std::vector<osg::ref_ptr<osg::Node>> scenes{all, fewer};
         if (hasNodes) scenes.push_back(CharacterScene(subject, count).root);
@@ -192,7 +196,7 @@ void measureStart(const Subject& subject, Run& run)
         return scene;
     };
     const osg::BoundingSphere sight = makeAll().root->getBound();
-    CharacterScene(subject, 1).setPixelError(pixelError); // levels of detail are made while a file is loaded
+    CharacterScene(subject, 1).setPixelError(pixelError); // the levels of detail are made
     std::vector<double> whole, wholeOfFewer, beyond, beyondOfFewer, compile, beyondCompiled, bytes;
     for (int round = 0; round < Run::frameRounds; ++round)
     {
@@ -260,6 +264,7 @@ void measureShading(const Subject& subject, Run& run)
     {
         const osg::ref_ptr<AnimatedCrowd> crowd = makeCrowd(*each, run.crowdCount);
         taken(crowd->getMeshes().setPixelError(fieldPixelError));
+        crowd->getMeshes().waitForLevels();
         crowds.push_back(crowd);
     }
     const std::vector<Costs> close = race(closeUps, run.rounds);

@@ -67,7 +67,10 @@ void CharacterScene::pause()
 void CharacterScene::setPixelError(float pixels)
 {
     for (const osg::ref_ptr<AnimatedCharacter>& character : characters)
+    {
         taken(character->getMeshes().setPixelError(pixels));
+        character->getMeshes().waitForLevels();
+    }
 }
 
 void CharacterScene::check(osg::State& state) const

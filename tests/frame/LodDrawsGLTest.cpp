@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "mesh/Tube.h"
+#include "support/Levels.h"
 #include "support/PrimitiveCount.h"
 #include "support/TestCrowd.h"
 #include "support/ViewerGLTest.h"
@@ -42,6 +43,7 @@ protected:
     /// The same with the camera as it is.
     GLuint trianglesDrawn(osg::Node& scene)
     {
+        waitForLevels(scene);
         _count->attach(*viewer().getCamera(), picture());
         pictureOf(&scene, {0.0, 0.1});
         return _count->primitives();
@@ -135,7 +137,7 @@ TEST_F(LodDrawsGLTest, charactersOfASetHaveLevelsOfTheirOwnMeshes)
     {
         const osg::ref_ptr<AnimatedCharacter> character = makeTubeCharacter(set);
         ASSERT_TRUE(character->getMeshes().setPixelError(pixelError));
-        // The mesh is set after setPixelError(), so the cull traversal has to build its levels.
+        // The mesh is set after setPixelError().
         character->setChild(0, makeShownTube(*set));
         if (i % 2 == 1) character->insertChild(0, makeBlank(1));
         scene->addChild(character);
@@ -287,6 +289,7 @@ protected:
         osg::ref_ptr<osg::Geode> floor = new osg::Geode;
         floor->addDrawable(new osg::ShapeDrawable(new osg::Box(osg::Vec3(14, 14, -2), 34, 34, 0.2f)));
         scene->addChild(floor);
+        waitForLevels(*scene);
         return scene;
     }
 

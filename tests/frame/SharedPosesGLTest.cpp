@@ -146,6 +146,7 @@ TEST_F(SharedPosesGLTest, posesAndLevelsTogetherStayWithinThePixelError)
     {
         SCOPED_TRACE(pixelError);
         ASSERT_TRUE(_crowd->getMeshes().setPixelError(pixelError));
+        _crowd->getMeshes().waitForLevels();
         drawNext(0.0);
         const std::uint64_t before = pipeline().getCounters().instancesEvaluated;
         drawNext(0.37);
@@ -180,6 +181,7 @@ TEST_F(SharedPosesGLTest, posesAndLevelsTogetherStayWithinThePixelError)
 TEST_F(SharedPosesGLTest, uploadsFollowWhatChanges)
 {
     ASSERT_TRUE(_crowd->getMeshes().setPixelError(1.0f));
+    _crowd->getMeshes().waitForLevels();
     const auto bytesAt = [&](double time)
     {
         const auto bytes = [&]
@@ -210,6 +212,7 @@ TEST_F(SharedPosesGLTest, othersKeepPosesOfTheirOwn)
     drawNext(0.1);
     const std::uint64_t everybody = pipeline().getCounters().instancesEvaluated - before;
     ASSERT_TRUE(_crowd->getMeshes().setPixelError(1.0f));
+    _crowd->getMeshes().waitForLevels();
     drawNext(0.2);
     EXPECT_LE(sharing(), everybody);
     EXPECT_GT(sharing(), everybody * 3 / 4) << "the others leave nothing to poses after their level of detail";
@@ -234,6 +237,7 @@ TEST_F(SharedPosesGLTest, theyLookAsWithPosesOfTheirOwn)
         ASSERT_TRUE(_crowd->setTint(_instances[i], osg::Vec4(1, 0.2f, 0.1f, 1)));
     const osg::ref_ptr<osg::Image> exact = pictureOf(_crowd, {0.0, 0.45});
     ASSERT_TRUE(_crowd->getMeshes().setPixelError(0.25f));
+    _crowd->getMeshes().waitForLevels();
     const auto expectShared = [&](bool areShared)
     {
         drawNext(0.45);

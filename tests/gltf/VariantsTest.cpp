@@ -82,6 +82,7 @@ TEST(VariantsTest, clonesShowTheirOwnAndShareTheMeshesOfAVariant)
     const ImportedModel model = importedIn("");
     AnimatedCharacter& first = *model.character;
     ASSERT_TRUE(first.getMeshes().setPixelError(1.0f));
+    first.getMeshes().waitForLevels();
     const osg::ref_ptr<AnimatedCharacter> second = cloneOf(first), third = cloneOf(first);
     ASSERT_EQ(&meshOf(*second), &meshOf(first));
 

@@ -259,6 +259,7 @@ osg::ref_ptr<osg::Node> makeSubject(Subject subject)
         if (subject == Subject::SharedCrowd)
         {
             EXPECT_TRUE(crowd->getMeshes().setPixelError(0.25f));
+            crowd->getMeshes().waitForLevels();
         }
         return crowd;
     }

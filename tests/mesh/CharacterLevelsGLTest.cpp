@@ -151,6 +151,7 @@ TEST_F(CharacterLevelsGLTest, farInstancesAreDrawnAsOneMesh)
 {
     const osg::ref_ptr<AnimatedCrowd> all = makeCrowd(), merged = makeCrowd();
     ASSERT_TRUE(merged->getMeshes().setPixelError(pixelError));
+    merged->getMeshes().waitForLevels();
     for (const double pixels : {8.0, 6.0})
     {
         const Shown expected(*pictureAt(*all, pixels));
@@ -170,6 +171,7 @@ TEST_F(CharacterLevelsGLTest, thePresentLookIsDrawn)
 {
     const osg::ref_ptr<AnimatedCrowd> all = makeCrowd(), merged = makeCrowd();
     ASSERT_TRUE(merged->getMeshes().setPixelError(pixelError));
+    merged->getMeshes().waitForLevels();
     const Shown before(*pictureAt(*merged, 8.0));
     EXPECT_EQ(mergedMeshes(*merged).size(), 1u);
     for (AnimatedCrowd* crowd : {all.get(), merged.get()})
@@ -183,6 +185,7 @@ TEST_F(CharacterLevelsGLTest, thePresentLookIsDrawn)
     EXPECT_NEAR(found.pixels, expected.pixels, 0.1 * expected.pixels);
     EXPECT_LT((found.color - expected.color).length(), 2.0f * visible);
     ASSERT_TRUE(merged->getMeshes().setPixelError(pixelError));
+    merged->getMeshes().waitForLevels();
     expectAlike(Shown(*pictureAt(*merged, 8.0)), expected, 8.0);
     EXPECT_EQ(mergedMeshes(*merged).size(), 1u) << "made anew";
 }
@@ -191,6 +194,7 @@ TEST_F(CharacterLevelsGLTest, theirGLObjectsComeAndGoWithTheCrowds)
 {
     const osg::ref_ptr<AnimatedCrowd> crowd = makeCrowd();
     ASSERT_TRUE(crowd->getMeshes().setPixelError(pixelError));
+    crowd->getMeshes().waitForLevels();
     const osg::ref_ptr<osg::Image> before = pictureAt(*crowd, 6.0);
     const std::set<SkinnedGeometry*> merged = mergedMeshes(*crowd);
     ASSERT_EQ(merged.size(), 1u);
@@ -208,6 +212,7 @@ TEST_F(CharacterLevelsGLTest, copiesShareThemAndNothingRemainsOfThemWithoutAPixe
 {
     const osg::ref_ptr<AnimatedCrowd> never = makeCrowd(), once = makeCrowd();
     ASSERT_TRUE(once->getMeshes().setPixelError(pixelError));
+    once->getMeshes().waitForLevels();
     const osg::ref_ptr<AnimatedCrowd> copy = osg::clone(once.get());
     const osg::ref_ptr<osg::Image> expected = pictureAt(*once, 6.0);
     const std::set<SkinnedGeometry*> merged = mergedMeshes(*once);

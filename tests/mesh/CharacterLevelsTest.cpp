@@ -117,6 +117,7 @@ TEST(CharacterLevelsTest, aCrowdKeepsThemWithoutAPixelError)
     const Arm arm;
     const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(arm.set, arm.parts);
     ASSERT_TRUE(crowd->getMeshes().setPixelError(1.0f));
+    crowd->getMeshes().waitForLevels();
     const std::shared_ptr<const CharacterLevels> first = CrowdDetail::levels(*crowd);
     ASSERT_TRUE(first);
     ASSERT_TRUE(crowd->getMeshes().setPixelError(0.0f));

@@ -414,7 +414,7 @@ TEST(SurfaceColorTest, theNewStateHasTheMaterialWithoutItsMaps)
     former.setMode(GL_CULL_FACE, osg::StateAttribute::OFF);
     former.setAttribute(new osg::Fog); // what an application changes later shows at all levels
     applyPbrMaterial(former, material);
-    const osg::ref_ptr<osg::StateSet> state = SurfaceColor::of(*square)->state(3, {0.5f, 0.25f});
+    const osg::ref_ptr<osg::StateSet> state = SurfaceColor::flatState(former, 3, {0.5f, 0.25f});
     const std::optional<PbrMaterial> made = pbrMaterialOf(*state);
     ASSERT_TRUE(made);
     EXPECT_EQ(made->baseColor, material.baseColor);

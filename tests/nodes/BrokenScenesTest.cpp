@@ -133,9 +133,12 @@ TEST(BrokenScenesTest, primitiveSetsBeyondTheVerticesAreNotRead)
     const osg::ref_ptr<AnimatedCharacter> character = new AnimatedCharacter(testCharacterSet());
     character->addChild(square);
     EXPECT_TRUE(character->getMeshes().setPixelError(1.0f));
+    character->getMeshes().waitForLevels();
     const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*character);
     EXPECT_TRUE(crowd->getMeshes().setPixelError(1.0f));
+    crowd->getMeshes().waitForLevels();
     EXPECT_TRUE(crowd->getMeshes().setPixelError(2.0f));
+    crowd->getMeshes().waitForLevels();
     EXPECT_EQ(character->getPosedMesh(*square)->getNumPrimitiveSets(), 1u);
 }
 

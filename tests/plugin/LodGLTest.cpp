@@ -2,6 +2,7 @@
 #include "gltf/ModelImport.h"
 #include "plugin/BumpyTubes.h"
 #include "plugin/PluginFolder.h"
+#include "support/Levels.h"
 #include "support/PrimitiveCount.h"
 #include "support/ScratchFolder.h"
 #include "support/ThreadingModels.h"
@@ -64,6 +65,7 @@ protected:
             else
                 scene->addChild(copy);
         }
+        waitForLevels(*scene);
         return scene;
     }
 
@@ -164,8 +166,6 @@ TEST_F(LodGLTest, everyThreadingModelDrawsTheSame)
     {
         const osg::ref_ptr<osg::Group> scene = makeScene(tubes, true, 0.5f);
         scene->addChild(makeScene(tubes, false, 0.5f));
-        // The cull traversal has to build the levels.
-        forEachMeshBelow(*scene, [](SkinnedGeometry& mesh) { MeshDetail::forgetLevels(mesh); });
         context().releaseContext();
         viewer().setThreadingModel(model);
         viewer().setSceneData(scene);

@@ -60,6 +60,7 @@ protected:
     {
         osg::ref_ptr<osg::Node> model = osgDB::readRefNodeFile(ownScene("Wanderer.glb"));
         EXPECT_TRUE(findCharacter(*model)->getMeshes().setPixelError(0.5f)); // levels of detail survive, too
+        findCharacter(*model)->getMeshes().waitForLevels();
         osg::ref_ptr<JointAttachment> hand = new JointAttachment("Hand_R");
         const osg::ref_ptr<osg::ShapeDrawable> box = new osg::ShapeDrawable(new osg::Box(osg::Vec3(), 0.3f));
         box->setUseDisplayList(false); // Mesa's zink leaves one out now and then

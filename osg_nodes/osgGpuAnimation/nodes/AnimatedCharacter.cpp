@@ -227,6 +227,7 @@ void AnimatedCharacter::update(double simulationTime)
     _updateTime = simulationTime;
     updateBounds();
     _meshes.showProperties();
+    _meshes.updateLevels();
     if (!_worldTargets->isEmpty())
         runAfterUpdateOf(*this, [](AnimatedCharacter& character) { character.takeWorldTargets(); });
     if (events.isEmpty()) return;

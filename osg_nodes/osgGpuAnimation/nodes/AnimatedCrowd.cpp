@@ -471,7 +471,7 @@ void AnimatedCrowd::prepareSharedPoses()
 {
     if (_meshes._outfits) _meshes._outfits->update(*this);
     if (_sharedPoses) _sharedPoses->forgetUnused();
-    _meshes.createLevels();
+    _meshes.updateLevels();
     const bool isOn = _meshes.getPixelError() > 0.0f && getAnimationSet().paletteSize() > 0;
     if (isOn && (!_sharedPoses || !_sharedPoses->isOf(_meshes.drawn()))) // kept for the next pixel error
         _sharedPoses = std::make_unique<SharedPoses>(_meshes.drawn(), getAnimationSet());

@@ -6,6 +6,7 @@
 #include <osgGpuAnimation/mesh/geometry/MaterialVariants.h>
 #include <osgGpuAnimation/mesh/geometry/MeshNames.h>
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
+#include <osgGpuAnimation/mesh/lod/LevelsTask.h>
 #include <osgGpuAnimation/nodes/properties/AnimatedProperties.h>
 #include <osgGpuAnimation/nodes/properties/CrowdOutfits.h>
 
@@ -27,7 +28,12 @@ void CharacterMeshes::copySettings(const CharacterMeshes& other)
     _variant = other._variant;
     _pixelError = other._pixelError;
     _levels = other._levels;
-    if (other._outfits) _outfits = std::make_unique<CrowdOutfits>(*other._outfits);
+    _task = other._task;
+    if (other._outfits)
+    {
+        _outfits = std::make_unique<CrowdOutfits>(*other._outfits);
+        _outfits->update(_node);
+    }
     if (_properties) _properties->bind(_node); // the children are the other's, too
 }
 
@@ -120,18 +126,54 @@ const std::vector<std::size_t>& CharacterMeshes::lists() const
 
 Result<void> CharacterMeshes::setPixelError(float pixels)
 {
-    const Result<void> prepared = LodRange::prepare(pixels, drawn(), *_set);
-    if (!prepared) return prepared;
+    if (!LodRange::isPixelError(pixels))
+        return Error{"a pixel error of " + std::to_string(pixels) + ": it must be " + LodRange::describePixelErrors()};
     _pixelError = pixels;
-    if (_levels && !_levels->isOf(drawn(), *_set, lists())) _levels = nullptr;
-    createLevels();
+    requestPresentLevels();
     return {};
 }
 
-void CharacterMeshes::createLevels()
+void CharacterMeshes::requestPresentLevels()
 {
-    const bool isNeeded = !_controller && _pixelError > 0.0f && _set->paletteSize() > 0;
-    if (isNeeded && !_levels) _levels = std::make_shared<const CharacterLevels>(drawn(), *_set, lists());
+    if (_levels && !_levels->isOf(drawn(), *_set, lists())) _levels = nullptr;
+    requestLevels();
+}
+
+bool CharacterMeshes::isMissingLevels() const
+{
+    if (!(_pixelError > 0.0f) || _set->paletteSize() == 0) return false;
+    return (!_controller && !_levels) || LevelsTask::areMissing(drawn());
+}
+
+void CharacterMeshes::requestLevels()
+{
+    const bool isMerged = !_controller && !_levels;
+    if (!isMissingLevels())
+        _task = nullptr;
+    else if (!_task || !_task->isOf(drawn(), *_set, isMerged, lists()))
+        _task = LevelsTask::of(drawn(), _set, isMerged, lists());
+    if (_task && _task->isDone()) takeLevels(); // of another node
+}
+
+void CharacterMeshes::takeLevels()
+{
+    const std::shared_ptr<const CharacterLevels> merged = _task->take();
+    if (!_controller && !_levels && merged && merged->isOf(drawn(), *_set, lists())) _levels = merged;
+    _task = nullptr;
+}
+
+void CharacterMeshes::updateLevels()
+{
+    if (_task && _task->isDone()) takeLevels();
+    if (!_task && isMissingLevels()) requestLevels();
+}
+
+void CharacterMeshes::waitForLevels()
+{
+    requestPresentLevels();
+    if (!_task) return;
+    _task->wait();
+    takeLevels();
 }
 
 } // namespace osgGpuAnimation

@@ -16,6 +16,7 @@ class AnimatedProperties;
 class AnimationController;
 class CharacterLevels;
 class CrowdOutfits;
+class LevelsTask;
 class VariantMeshes;
 
 /// The meshes of an AnimatedCharacter, or of all instances of an AnimatedCrowd: which are visible, in which variant of
@@ -43,7 +44,7 @@ public:
     SkinnedGeometry* find(const std::string& name) const;
     /// Shows or hides all meshes of that name; if there are none, those of that name of the file's mesh. Clones show
     /// meshes of their own: a direct child that changes is replaced by another drawable over the same arrays, as with
-    /// material variants. Bounds do not change. With a pixel error of a crowd, call setPixelError() again: it creates
+    /// material variants. Bounds do not change. With a pixel error of a crowd, call setPixelError() again: it requests
     /// the levels of detail of what is visible now. Error: there is no such mesh; the message lists the names.
     Result<void> setVisible(const std::string& name, bool isVisible);
 
@@ -57,14 +58,19 @@ public:
 
     /// Sets the largest error of the drawn surface on screen: meshes are drawn with fewer triangles while the error
     /// stays below it, see LodLevels. 0 (the default): all triangles. Each camera selects the level by distance, with
-    /// the measure of small feature culling. The call creates the levels of the present meshes, which takes time (see
-    /// MeshSimplifier); the next cull creates those of later changes. No levels are created for meshes that are not
-    /// direct children or for vertices beyond LodRange::maxVertices.
-    /// A crowd draws instances of a few pixels as one mesh per material without textures, and those that loop one clip
-    /// share poses as far as the error permits; 0: exact poses.
-    /// pixels: in [0, LodRange::maxPixelError]. Error: pixels is out of range or NaN.
+    /// the measure of small feature culling.
+    /// The levels of the present meshes are made in the background, from copies of the meshes; an update traversal
+    /// takes them. Until then, all triangles are drawn. Later changes of vertices or primitives have the same effect.
+    /// No levels are made for meshes that are not direct children or for vertices beyond LodRange::maxVertices. A crowd
+    /// draws instances of a few pixels as one mesh per material without textures, and those that loop one clip share
+    /// poses as far as the error permits; 0: exact poses. pixels: in [0, LodRange::maxPixelError]. Error: pixels is out
+    /// of range or NaN.
     Result<void> setPixelError(float pixels);
     float getPixelError() const { return _pixelError; } ///< pixels, at least 0
+    /// Blocks until the levels of the present meshes exist, and takes them. For whoever renders single pictures,
+    /// measures frames or compares levels; writers of .osgb, .osgt and .osgx call it. Returns at once without a pixel
+    /// error. Call it where meshes may be changed.
+    void waitForLevels();
 
 private:
     friend class AnimatedCharacter;
@@ -79,9 +85,13 @@ private:
     void forgetProperties();                         ///< after another set of the character
     void showVariant();                              ///< after the node has got further meshes
     void showProperties();                           ///< those of the controller's present pose
-    void createLevels();                             ///< of the crowd, unless they exist
     const osg::Group& drawn() const;                 ///< the node, or the meshes of a crowd's outfits
     const std::vector<std::size_t>& lists() const;   ///< see CharacterLevels::Lists
+    void updateLevels();                             ///< in the update traversal: takes or requests what is missing
+    void requestLevels();                            ///< those that are missing, unless they are being made
+    void requestPresentLevels();                     ///< the same, without those of earlier meshes
+    void takeLevels();                               ///< of a task that is done
+    bool isMissingLevels() const;                    ///< false without a pixel error
     template <typename Change>
     void change(Change change);
 
@@ -93,7 +103,8 @@ private:
     std::string _variant;
     float _pixelError = 0.0f;                       ///< pixels
     std::unique_ptr<CrowdOutfits> _outfits;         ///< of a crowd; null: there were none
-    std::shared_ptr<const CharacterLevels> _levels; ///< of the crowd as a whole; null: no pixel error yet
+    std::shared_ptr<const CharacterLevels> _levels; ///< of the crowd as a whole; null: not made
+    std::shared_ptr<LevelsTask> _task;              ///< null: nothing is missing
 };
 
 } // namespace osgGpuAnimation

@@ -16,11 +16,6 @@ namespace osgGpuAnimation
 namespace
 {
 
-double squaredLength(const glm::dvec3& vector)
-{
-    return glm::dot(vector, vector);
-}
-
 double squaredDistanceToSegment(const glm::dvec3& point, const glm::dvec3& a, const glm::dvec3& b)
 {
     const glm::dvec3 along = b - a;
@@ -53,18 +48,19 @@ bool isPlaced(const glm::vec3& position)
 
 double squaredDistanceToTriangle(const glm::dvec3& point, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
 {
-    const glm::dvec3 normal = glm::cross(b - a, c - a);
-    const double area = squaredLength(normal);
-    const bool isAbove = area > 0.0 && glm::dot(glm::cross(b - a, point - a), normal) >= 0.0 &&
-                         glm::dot(glm::cross(c - b, point - b), normal) >= 0.0 &&
-                         glm::dot(glm::cross(a - c, point - c), normal) >= 0.0;
-    if (isAbove)
-    {
-        const double height = glm::dot(point - a, normal);
-        return height * height / area;
-    }
-    return std::min({squaredDistanceToSegment(point, a, b), squaredDistanceToSegment(point, b, c),
-                     squaredDistanceToSegment(point, c, a)});
+    const glm::dvec3 ab = b - a, ac = c - a, ap = point - a;
+    const double abOnAb = squaredLength(ab), abOnAc = glm::dot(ab, ac), acOnAc = squaredLength(ac);
+    const double apOnAb = glm::dot(ab, ap), apOnAc = glm::dot(ac, ap);
+    // Barycentric coordinates of the point's projection, times the squared normal.
+    const double ofB = acOnAc * apOnAb - abOnAc * apOnAc, ofC = abOnAb * apOnAc - abOnAc * apOnAb;
+    const double area = abOnAb * acOnAc - abOnAc * abOnAc, ofA = area - ofB - ofC;
+    if (area > 0.0 && ofA >= 0.0 && ofB >= 0.0 && ofC >= 0.0) return squaredLength(ap - (ofB * ab + ofC * ac) / area);
+    // Nearest is a side that faces the point; without an area, any may be.
+    double min = std::numeric_limits<double>::infinity();
+    if (!(area > 0.0) || ofA < 0.0) min = squaredDistanceToSegment(point, b, c);
+    if (!(area > 0.0) || ofB < 0.0) min = std::min(min, squaredDistanceToSegment(point, c, a));
+    if (!(area > 0.0) || ofC < 0.0) min = std::min(min, squaredDistanceToSegment(point, a, b));
+    return min;
 }
 
 MeshConnectivity::MeshConnectivity(const PosedSurface& surface, const std::vector<std::uint32_t>& indices)

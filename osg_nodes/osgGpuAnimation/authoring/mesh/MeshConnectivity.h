@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -25,6 +27,9 @@ struct PosedSurface
     std::vector<glm::vec2> texCoords;                               ///< one per vertex, or empty
     std::vector<glm::vec3> colors;                                  ///< one per vertex, in [0, 1], or empty
     bool isTwoSided = false;                                        ///< triangles show the same from behind
+    const std::atomic<bool>* stop = nullptr; ///< true: nobody needs a result, so that any ends the work; null: false
+
+    bool isStopped() const { return stop && *stop; }
 
     std::size_t vertexCount() const { return poses.front().size(); }
     /// The diagonal of the box in the first pose; 0 without vertices.
@@ -33,6 +38,11 @@ struct PosedSurface
 
 /// True if the squares of its coordinates are finite, too.
 bool isPlaced(const glm::vec3& position);
+
+inline double squaredLength(const glm::dvec3& vector)
+{
+    return glm::dot(vector, vector);
+}
 
 /// The squared distance from a point to a triangle; a triangle without area is a segment or a point.
 double squaredDistanceToTriangle(const glm::dvec3& point, const glm::dvec3& a, const glm::dvec3& b,

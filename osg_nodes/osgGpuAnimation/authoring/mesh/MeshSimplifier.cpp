@@ -50,23 +50,26 @@ std::vector<Edge> edgesOf(const MeshConnectivity& mesh)
     return edges;
 }
 
-/// To the nearest triangle, or to one within `enough`. triangles: of the positions. inOutNearest: the triangle to begin
-/// with; that triangle.
+/// To the nearest triangle, or at most `enough` to one within it. triangles: of the positions. inOutNearest: the
+/// triangle to begin with; that triangle.
 double squaredDistance(const glm::dvec3& from, const std::vector<glm::vec3>& positions,
                        const std::vector<MeshConnectivity::Corners>& triangles, double enough,
                        std::size_t& inOutNearest)
 {
     double nearest = std::numeric_limits<double>::infinity();
-    const std::size_t first = inOutNearest;
-    for (std::size_t i = 0; i < triangles.size() && nearest > enough; ++i)
+    std::size_t triangle = inOutNearest;
+    for (std::size_t i = 0; i < triangles.size(); ++i, ++triangle)
     {
-        const std::size_t triangle = first + i < triangles.size() ? first + i : first + i - triangles.size();
-        const auto& [a, b, c] = triangles[triangle];
-        const double distance = squaredDistanceToTriangle(from, glm::dvec3(positions[a]), glm::dvec3(positions[b]),
-                                                          glm::dvec3(positions[c]));
+        if (triangle >= triangles.size()) triangle -= triangles.size();
+        const auto& [first, second, third] = triangles[triangle];
+        const glm::dvec3 a(positions[first]), b(positions[second]), c(positions[third]);
+        double distance = squaredLength(from - a); // to a corner: enough for most
+        if (distance > enough) distance = std::min(squaredLength(from - b), squaredLength(from - c));
+        if (distance > enough) distance = squaredDistanceToTriangle(from, a, b, c);
         if (!(distance < nearest)) continue;
         nearest = distance;
         inOutNearest = triangle;
+        if (nearest <= enough) break;
     }
     return nearest;
 }
@@ -84,7 +87,7 @@ void MeshSimplifier::addPlanes()
 {
     const std::size_t poseCount = _mesh.keyPoseCount();
     const std::vector<Edge> edges = edgesOf(_mesh);
-    for (std::uint32_t triangle = 0; triangle < _mesh.triangleCount(); ++triangle)
+    for (std::uint32_t triangle = 0; triangle < _mesh.triangleCount() && !_surface.isStopped(); ++triangle)
     {
         const Corners& corners = _mesh.corners(triangle);
         for (std::size_t i = 0; i < 3; ++i)
@@ -130,7 +133,7 @@ void MeshSimplifier::consider(std::uint32_t from, std::uint32_t to)
 void MeshSimplifier::considerAll()
 {
     _next = {};
-    for (std::uint32_t point = 0; point < _mesh.pointCount(); ++point)
+    for (std::uint32_t point = 0; point < _mesh.pointCount() && !_surface.isStopped(); ++point)
         for (const std::uint32_t neighbour : _mesh.neighboursOf(point))
             consider(point, neighbour);
 }
@@ -190,7 +193,7 @@ bool MeshSimplifier::collapseCandidates()
     bool hasCollapsed = false;
     const std::size_t poseCount = _mesh.keyPoseCount();
     std::vector<Corners> moved;
-    while (!_next.empty())
+    while (!_next.empty() && !_surface.isStopped())
     {
         const Collapse next = _next.top();
         _next.pop();
@@ -336,11 +339,14 @@ double MeshSimplifier::error(std::size_t* outPose) const
     std::vector<std::uint32_t> vertexOf;
     for (std::uint32_t point = 0; point < _mesh.pointCount(); ++point)
         vertexOf.push_back(_mesh.placeOf(point));
-    return errorOfMoved(_surface.poses, vertexOf, outPose);
+    std::size_t pose = 0;
+    const double error = errorOfMoved(_surface.poses, vertexOf, std::numeric_limits<double>::infinity(), pose);
+    if (outPose) *outPose = pose;
+    return error;
 }
 
 double MeshSimplifier::errorOfMoved(const PosedSurface::Poses& poses, const std::vector<std::uint32_t>& vertexOf,
-                                    std::size_t* outPose) const
+                                    double enough, std::size_t& inOutPose) const
 {
     struct Remaining
     {
@@ -358,16 +364,21 @@ double MeshSimplifier::errorOfMoved(const PosedSurface::Poses& poses, const std:
     }
     std::vector<std::size_t> nearest(_mesh.pointCount()); // of its triangles, in the pose before
     double max = 0.0;                                     // squared
-    for (std::size_t pose = 0; pose < poses.size(); ++pose)
+    const std::size_t first = inOutPose;
+    for (std::size_t i = 0; i < poses.size() && max <= enough * enough && !_surface.isStopped(); ++i)
+    {
+        const std::size_t pose = (first + i) % poses.size();
+        const std::vector<glm::vec3> original = _surface.poses[pose]; // a copy is in the cache
         for (const Remaining& remaining : all)
             for (const std::uint32_t point : remaining.points)
             {
-                const double distance =
-                    squaredDistance(_mesh.at(pose, point), poses[pose], remaining.triangles, max, nearest[point]);
+                const double distance = squaredDistance(glm::dvec3(original[_mesh.placeOf(point)]), poses[pose],
+                                                        remaining.triangles, max, nearest[point]);
                 if (!(distance > max)) continue;
                 max = distance;
-                if (outPose) *outPose = pose;
+                inOutPose = pose;
             }
+    }
     return std::sqrt(max);
 }
 

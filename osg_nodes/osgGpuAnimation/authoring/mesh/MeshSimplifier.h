@@ -91,9 +91,10 @@ public:
     /// is so large.
     double error(std::size_t* outPose = nullptr) const;
     /// The same with moved vertices. poses: their positions, as many poses as those of the surface. vertexOf: by point,
-    /// the number of its vertex there.
-    double errorOfMoved(const PosedSurface::Poses& poses, const std::vector<std::uint32_t>& vertexOf,
-                        std::size_t* outPose = nullptr) const;
+    /// the number of its vertex there. enough: of a larger error only one of its poses is measured. inOutPose: the pose
+    /// to begin with, such as that of an earlier error.
+    double errorOfMoved(const PosedSurface::Poses& poses, const std::vector<std::uint32_t>& vertexOf, double enough,
+                        std::size_t& inOutPose) const;
 
 private:
     struct Collapse

@@ -58,16 +58,20 @@ std::vector<SurfaceViews::Seen> SurfaceViews::seen(std::size_t view, const Surfa
     if (!(grid.cell > 0.0)) return cells;
     const std::vector<glm::vec3>& positions = surface.poses[grid.pose];
     std::vector<double> nearest(cells.size(), -std::numeric_limits<double>::infinity());
+    std::vector<glm::dvec3> placed; // column, row and height
+    placed.reserve(positions.size());
+    for (const glm::dvec3 position : positions)
+        placed.emplace_back((glm::dot(position, grid.right) - grid.left) / grid.cell,
+                            (glm::dot(position, grid.up) - grid.bottom) / grid.cell, glm::dot(position, grid.towards));
     for (std::uint32_t triangle = 0; 3 * triangle + 2 < surface.triangles.size(); ++triangle)
     {
         std::array<glm::dvec2, 3> places;
         std::array<double, 3> heights;
         for (std::size_t corner = 0; corner < 3; ++corner)
         {
-            const glm::dvec3 position(positions[surface.triangles[3 * triangle + corner]]);
-            places[corner] = {(glm::dot(position, grid.right) - grid.left) / grid.cell,
-                              (glm::dot(position, grid.up) - grid.bottom) / grid.cell};
-            heights[corner] = glm::dot(position, grid.towards);
+            const glm::dvec3& place = placed[surface.triangles[3 * triangle + corner]];
+            places[corner] = {place.x, place.y};
+            heights[corner] = place.z;
         }
         const double area = cross(places[1] - places[0], places[2] - places[0]);
         if (area == 0.0 || (area < 0.0 && !surface.isTwoSided)) continue;
@@ -77,14 +81,17 @@ std::vector<SurfaceViews::Seen> SurfaceViews::seen(std::size_t view, const Surfa
         { return static_cast<int>(std::clamp(std::ceil(place - 0.5), 0.0, 1.0 * cellsAcross)); };
         const auto lastTo = [](double place)
         { return static_cast<int>(std::clamp(std::floor(place - 0.5), -1.0, cellsAcross - 1.0)); };
-        for (int y = firstFrom(bottom); y <= lastTo(top); ++y)
-            for (int x = firstFrom(left); x <= lastTo(right); ++x)
+        const int firstColumn = firstFrom(left), lastColumn = lastTo(right), lastRow = lastTo(top);
+        for (int y = firstFrom(bottom); y <= lastRow; ++y)
+            for (int x = firstColumn; x <= lastColumn; ++x)
             {
                 const glm::dvec2 centre(x + 0.5, y + 0.5);
-                const glm::dvec3 shares(cross(places[1] - centre, places[2] - centre) / area,
-                                        cross(places[2] - centre, places[0] - centre) / area,
-                                        cross(places[0] - centre, places[1] - centre) / area);
-                if (shares.x < 0.0 || shares.y < 0.0 || shares.z < 0.0) continue;
+                const glm::dvec2 a = places[0] - centre, b = places[1] - centre, c = places[2] - centre;
+                const glm::dvec3 areas(cross(b, c), cross(c, a), cross(a, b));
+                if (area > 0.0 ? areas.x < 0.0 || areas.y < 0.0 || areas.z < 0.0
+                               : areas.x > 0.0 || areas.y > 0.0 || areas.z > 0.0)
+                    continue;
+                const glm::dvec3 shares = areas / area;
                 const double height = shares.x * heights[0] + shares.y * heights[1] + shares.z * heights[2];
                 const auto cell = static_cast<std::size_t>(y * cellsAcross + x);
                 if (!(height > nearest[cell])) continue;

@@ -62,7 +62,7 @@ public:
     /// A cell of a view: its column and its row.
     using Cell = glm::ivec2;
     static std::size_t indexOf(const Cell& cell) { return static_cast<std::size_t>(cell.y * cellsAcross + cell.x); }
-    /// The visible cells that have a neighbour that is not. cells: of a view.
+    /// The visible cells that have a neighbour that is not, row by row. cells: of a view.
     static std::vector<Cell> outlineOf(const std::vector<Seen>& cells);
     /// The way between the centres of two cells of a view.
     glm::vec3 wayBetween(std::size_t view, const Cell& from, const Cell& to) const;

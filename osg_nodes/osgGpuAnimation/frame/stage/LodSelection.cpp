@@ -20,14 +20,6 @@ std::string LodRange::describePixelErrors()
     return "a number of pixels from 0 to " + std::to_string(maxPixelError);
 }
 
-Result<void> LodRange::prepare(float pixels, const osg::Group& meshes, const AnimationSet& set)
-{
-    if (!isPixelError(pixels))
-        return Error{"a pixel error of " + std::to_string(pixels) + ": it must be " + describePixelErrors()};
-    if (pixels > 0.0f && set.paletteSize() > 0) static_cast<void>(LodRange(meshes, set));
-    return {};
-}
-
 LodRange::LodRange(const osg::Group& meshes, const AnimationSet& set, std::shared_ptr<const CharacterLevels> merged,
                    const CharacterLevels::Lists& lists)
     : _merged(merged && merged->isOf(meshes, set, lists) ? std::move(merged) : nullptr)
@@ -39,14 +31,13 @@ LodRange::LodRange(const osg::Group& meshes, const AnimationSet& set, std::share
         _coarsest = std::max(_coarsest, levels.coarsest());
     };
     if (_merged) add(*_merged);
-    std::size_t vertices = 0;
     forEachMesh(meshes,
                 [&](const SkinnedGeometry& mesh)
                 {
-                    vertices += mesh.getVertexCount();
-                    if (vertices > maxVertices) return;
-                    _ofMeshes.emplace_back(&mesh, MeshDetail::levels(mesh, set));
-                    add(*_ofMeshes.back().second);
+                    std::shared_ptr<const LodLevels> levels = MeshDetail::findLevels(mesh);
+                    if (!levels) return;
+                    add(*levels);
+                    _ofMeshes.emplace_back(&mesh, std::move(levels));
                 });
 }
 

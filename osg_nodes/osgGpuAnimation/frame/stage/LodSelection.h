@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/math/Result.h>
 #include <osgGpuAnimation/mesh/lod/CharacterLevels.h>
+#include <osgGpuAnimation/mesh/lod/LevelsTask.h>
 #include <osgGpuAnimation/mesh/lod/LodLevels.h>
 
 #include <osg/Camera>
@@ -28,21 +29,17 @@ class LodRange
 {
 public:
     /// The largest sum of vertices in a group. Meshes beyond it get no levels, unless another group contains them.
-    static constexpr std::size_t maxVertices = 10 * LodLevels::maxVertices;
+    static constexpr std::size_t maxVertices = LevelsTask::maxVertices;
     static constexpr int maxPixelError = 1'000'000; ///< pixels
 
     /// True if setPixelError() of characters and crowds accepts the value.
     static bool isPixelError(double pixels) { return pixels >= 0.0 && pixels <= maxPixelError; }
     /// The accepted range, for messages.
     static std::string describePixelErrors();
-    /// Creates the levels of the SkinnedGeometry among a group's children, unless the pixel error is 0 or the set is
-    /// empty. Error: pixels is out of range.
-    static Result<void> prepare(float pixels, const osg::Group& meshes, const AnimationSet& set);
 
     LodRange() = default;
-    /// The range of the SkinnedGeometry among a group's children. Only this constructor creates missing levels; meshes
-    /// without levels are drawn with all triangles. merged: replaces meshes if it isOf() the group with these lists;
-    /// null: nothing.
+    /// The range of the SkinnedGeometry among a group's children. Meshes without levels are drawn with all triangles.
+    /// merged: replaces meshes if it isOf() the group with these lists; null: nothing.
     LodRange(const osg::Group& meshes, const AnimationSet& set, std::shared_ptr<const CharacterLevels> merged = nullptr,
              const CharacterLevels::Lists& lists = {});
 

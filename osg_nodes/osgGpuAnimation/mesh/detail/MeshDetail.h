@@ -12,7 +12,8 @@ namespace osgGpuAnimation
 /// What the kit's own code and plugins need of a SkinnedGeometry, and applications do not: its levels of detail.
 struct MeshDetail
 {
-    /// The levels, see CharacterMeshes::setPixelError(). The first call creates them from poses of the set.
+    /// The levels, see CharacterMeshes::setPixelError(). The first call creates them from poses of the set, in the
+    /// calling thread.
     static std::shared_ptr<const LodLevels> levels(const SkinnedGeometry& mesh, const AnimationSet& set);
     /// The same without creating any. Null: not created, or the mesh has changed.
     static std::shared_ptr<const LodLevels> findLevels(const SkinnedGeometry& mesh) { return mesh._lod->known(mesh); }
@@ -21,6 +22,10 @@ struct MeshDetail
     {
         mesh._lod->set(std::move(levels));
     }
+    /// A copy for another thread, which may read it while the application changes the mesh: of what levels are made
+    /// from, without its StateSet, callbacks and user data.
+    static osg::ref_ptr<const SkinnedGeometry> snapshot(const SkinnedGeometry& mesh);
+    static unsigned int forgetCount(const SkinnedGeometry& mesh) { return mesh._lod->forgetCount(); }
     /// For example after a change of the clips; levels() creates new ones.
     static void forgetLevels(SkinnedGeometry& mesh) { mesh._lod->forget(); }
 };

@@ -26,17 +26,18 @@ constexpr std::size_t otherPoses = 256;        ///< beside the key poses
 // level's error: a pixel error of 0.5.
 constexpr double minSimilarity = 0.98, usualPixel = 2.0;
 
-/// Of the parts at a level of their own.
-std::size_t trianglesOf(const MergedParts::Meshes& parts, const AnimationSet& set, int level)
+/// Of the parts at a level of their own. levels: by mesh.
+std::size_t trianglesOf(const MergedParts::Parts& parts, const std::vector<std::size_t>& meshes,
+                        const CharacterLevels::Sources::Levels& levels, int level)
 {
     std::size_t indices = 0;
-    for (const SkinnedGeometry* part : parts)
+    for (std::size_t part = 0; part < parts.size(); ++part)
     {
-        const std::shared_ptr<const LodLevels> levels = MeshDetail::levels(*part, set);
-        for (unsigned int i = 0; i < part->getNumPrimitiveSets(); ++i)
+        const SkinnedGeometry& mesh = *parts[part].mesh;
+        for (unsigned int i = 0; i < mesh.getNumPrimitiveSets(); ++i)
         {
-            const osg::PrimitiveSet* drawn = levels->reduced(i, level).elements;
-            if (!drawn) drawn = part->getPrimitiveSet(i);
+            const osg::PrimitiveSet* drawn = levels[meshes[part]]->reduced(i, level).elements;
+            if (!drawn) drawn = mesh.getPrimitiveSet(i);
             if (drawn) indices += drawn->getNumIndices();
         }
     }
@@ -103,68 +104,99 @@ std::vector<CharacterLevels::Part> CharacterLevels::partsOf(const osg::Group& me
 CharacterLevels::CharacterLevels(const osg::Group& meshes, const AnimationSet& set, const Lists& lists)
     : CharacterLevels(partsOf(meshes, lists), set)
 {
-    std::size_t vertices = 0;
+    std::vector<Sources::Mesh> all;
     for (const Part& part : _parts)
-        vertices += part.mesh->getVertexCount();
-    if (set.paletteSize() == 0 || _parts.size() > maxParts || vertices > maxVertices) return;
-    std::vector<Indices> groups;
-    for (std::size_t part = 0; part < _parts.size(); ++part)
-    {
-        const SkinnedGeometry& mesh = *_parts[part].mesh;
-        if (!MergedParts::accepts(mesh)) continue;
-        const auto alike =
-            std::find_if(groups.begin(), groups.end(),
-                         [&](const Indices& group)
-                         {
-                             const Part& first = _parts[group.front()];
-                             return first.list == _parts[part].list && MergedParts::areAlike(*first.mesh, mesh);
-                         });
-        if (alike == groups.end())
-            groups.push_back({part});
-        else
-            alike->push_back(part);
-    }
-    if (groups.empty()) return;
-    std::vector<std::vector<AffineMatrix>> palettes;
-    const MeasuredPoses measured(set, LodLevels::poseCountOf(vertices, posedVertices), otherPoses);
-    for (const PoseInstruction& pose : measured.poses)
-        Pose::evaluate(set, pose, AffineMatrix(), palettes.emplace_back());
-    for (const Indices& group : groups)
-        merge(group, set, palettes, measured.keyPoseCount);
+        all.push_back({part.mesh, part.mesh, part.list});
+    const Sources sources(all);
+    if (sources.isEmpty()) return;
+    Sources::Levels levels;
+    for (const Part& part : _parts)
+        levels.push_back(MeshDetail::levels(*part.mesh, set));
+    includeMade(sources.make(set, levels, nullptr));
 }
 
-void CharacterLevels::merge(const Indices& indices, const AnimationSet& set, const MergedParts::Palettes& palettes,
-                            std::size_t keyPoseCount)
+CharacterLevels::Sources::Sources(const std::vector<Mesh>& meshes)
 {
-    MergedParts::Meshes meshes;
-    for (const std::size_t part : indices)
-        meshes.push_back(_parts[part].mesh);
-    const MergedParts parts(meshes, palettes, keyPoseCount);
-    if (!parts.isValid()) return;
+    for (const Mesh& mesh : meshes)
+        _vertexCount += mesh.mesh->getVertexCount();
+    if (meshes.size() > maxParts || _vertexCount > maxVertices) return;
+    for (std::size_t index = 0; index < meshes.size(); ++index)
+    {
+        const SkinnedGeometry& mesh = *meshes[index].mesh;
+        if (!MergedParts::accepts(mesh)) continue;
+        const auto alike =
+            std::find_if(_groups.begin(), _groups.end(),
+                         [&](const Group& group)
+                         {
+                             const Mesh& first = meshes[group.meshes.front()];
+                             return first.list == meshes[index].list && MergedParts::areAlike(*first.mesh, mesh);
+                         });
+        Group& group = alike == _groups.end() ? _groups.emplace_back() : *alike;
+        group.meshes.push_back(index);
+        group.parts.push_back({meshes[index].copy, *SurfaceColor::of(*meshes[index].copy, mesh.getStateSet())});
+    }
+}
+
+std::vector<CharacterLevels::Made> CharacterLevels::Sources::make(const AnimationSet& set, const Levels& levels,
+                                                                  const std::atomic<bool>* stop) const
+{
+    std::vector<Made> made;
+    if (set.paletteSize() == 0 || isEmpty()) return made;
+    MergedParts::Palettes palettes;
+    const MeasuredPoses measured(set, LodLevels::poseCountOf(_vertexCount, posedVertices), otherPoses);
+    for (const PoseInstruction& pose : measured.poses)
+        Pose::evaluate(set, pose, AffineMatrix(), palettes.emplace_back());
+    for (const Group& group : _groups)
+    {
+        const MergedParts parts(group.parts, palettes, measured.keyPoseCount, stop);
+        std::optional<Made> ofGroup = parts.isValid() ? makeGroup(group, parts, levels) : std::nullopt;
+        if (ofGroup) made.push_back(std::move(*ofGroup));
+    }
+    return made;
+}
+
+std::optional<CharacterLevels::Made> CharacterLevels::Sources::makeGroup(const Group& group, const MergedParts& parts,
+                                                                         const Levels& levels)
+{
     MergedMesh mesh(parts);
-    Merged merged{indices, {}};
+    Merged merged{group.meshes, {}};
     const double min = finestShare * parts.size(), max = coarsestShare * parts.size();
     const int finest = LodLevels::levelOf(min), coarsest = LodLevels::levelOf(max);
     for (double limit = min; limit <= max; limit *= coarser)
     {
         const std::size_t before = mesh.triangleCount();
         mesh.reduce(limit);
+        if (parts.surface().isStopped()) return std::nullopt;
         if (mesh.triangleCount() == 0) break;
         if (mesh.triangleCount() == before) continue;
         const double error = mesh.fit();
         int level = std::max(finest, LodLevels::levelFor(error));
         while (level <= coarsest && mesh.similarity(usualPixel * LodLevels::errorOf(level)) < minSimilarity)
             ++level;
+        if (level > coarsest && !merged.steps.empty()) break; // coarser ones are less similar
         if (level > coarsest) continue;
         while (!merged.steps.empty() && merged.steps.back().level >= level)
             merged.steps.pop_back();
         const double enough = merged.steps.empty()
-                                  ? static_cast<double>(trianglesOf(meshes, set, level))
+                                  ? static_cast<double>(trianglesOf(group.parts, group.meshes, levels, level))
                                   : worthwhile * static_cast<double>(trianglesOf(*merged.steps.back().mesh));
         if (static_cast<double>(mesh.triangleCount()) <= enough) merged.steps.push_back({level, mesh.make(), error});
         if (mesh.triangleCount() <= fewestTriangles) break;
     }
-    if (!merged.steps.empty()) include(std::move(merged));
+    if (merged.steps.empty()) return std::nullopt;
+    return Made{std::move(merged), mesh.metallicRoughness()};
+}
+
+void CharacterLevels::includeMade(std::vector<Made> made)
+{
+    for (Made& group : made)
+    {
+        const osg::StateSet& state = *_parts[group.merged.parts.front()].state;
+        for (const Step& step : group.merged.steps)
+            step.mesh->setStateSet(
+                SurfaceColor::flatState(state, step.mesh->getInfluenceCount(), group.metallicRoughness));
+        include(std::move(group.merged));
+    }
 }
 
 void CharacterLevels::include(Merged merged)

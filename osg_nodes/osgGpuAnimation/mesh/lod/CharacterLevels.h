@@ -3,13 +3,16 @@
 
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/mesh/lod/LodLevels.h>
+#include <osgGpuAnimation/mesh/lod/MergedParts.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 
 #include <osg/Group>
 #include <osg/StateSet>
 
+#include <atomic>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -30,7 +33,7 @@ public:
     /// Empty: all are.
     using Lists = std::vector<std::size_t>;
 
-    /// Creates the levels of the meshes among the group's children (see forEachMesh()) in 1 to 10 s.
+    /// Creates the levels of the meshes among the group's children (see forEachMesh()) in 0.5 to 5 s.
     CharacterLevels(const osg::Group& meshes, const AnimationSet& set, const Lists& lists = {});
 
     struct Step
@@ -47,6 +50,21 @@ public:
 
         const Step* at(int level) const; ///< null: the parts themselves
     };
+    class Sources;
+    /// The merged meshes that Sources::make() returns.
+    struct Made
+    {
+        Merged merged; ///< the meshes have no StateSets
+        osg::Vec2 metallicRoughness;
+    };
+    /// Without levels yet, for includeMade().
+    static std::shared_ptr<CharacterLevels> unmade(const osg::Group& meshes, const AnimationSet& set,
+                                                   const Lists& lists)
+    {
+        return std::shared_ptr<CharacterLevels>(new CharacterLevels(partsOf(meshes, lists), set));
+    }
+    /// made: of the meshes. Creates StateSets: call it in a thread that may change those of the meshes.
+    void includeMade(std::vector<Made> made);
     /// The levels that a file contains. merged: from merged() of the same meshes. They are untrusted, except for the
     /// steps' meshes: an error names the first element that does not fit.
     static Result<std::shared_ptr<const CharacterLevels>> restored(const osg::Group& meshes, const AnimationSet& set,
@@ -99,8 +117,6 @@ private:
     static std::vector<Part> partsOf(const osg::Group& meshes, const Lists& lists);
     CharacterLevels(std::vector<Part> parts, const AnimationSet& set) : _set(&set), _parts(std::move(parts)) {}
     Result<void> restore(Merged merged);
-    void merge(const Indices& indices, const AnimationSet& set, const std::vector<std::vector<AffineMatrix>>& palettes,
-               std::size_t keyPoseCount);
     void include(Merged merged);
 
     const AnimationSet* _set; ///< not dereferenced
@@ -108,6 +124,39 @@ private:
     std::vector<Merged> _merged;
     int _finest = LodLevels::allTriangles;
     int _coarsest = LodLevels::allTriangles;
+};
+
+/// What CharacterLevels are made from: a snapshot of the meshes. make() may run in another thread while the application
+/// changes the meshes.
+class CharacterLevels::Sources
+{
+public:
+    /// A mesh that is only read here, and what make() reads in its place: a copy, or the mesh itself.
+    struct Mesh
+    {
+        const SkinnedGeometry* mesh;
+        osg::ref_ptr<const SkinnedGeometry> copy;
+        std::size_t list = 0; ///< see Lists
+    };
+    /// meshes: those of forEachMesh(), in its order.
+    explicit Sources(const std::vector<Mesh>& meshes);
+
+    bool isEmpty() const { return _groups.empty(); } ///< nothing can be merged
+    using Levels = std::vector<std::shared_ptr<const LodLevels>>;
+    /// levels: by mesh, not null. stop: see PosedSurface.
+    std::vector<Made> make(const AnimationSet& set, const Levels& levels, const std::atomic<bool>* stop) const;
+
+private:
+    struct Group
+    {
+        Indices meshes;
+        MergedParts::Parts parts; ///< the same meshes
+    };
+
+    static std::optional<Made> makeGroup(const Group& group, const MergedParts& parts, const Levels& levels);
+
+    std::vector<Group> _groups; ///< each of one material
+    std::size_t _vertexCount = 0;
 };
 
 template <typename Function>

@@ -78,9 +78,10 @@ void copyTo(const osg::Array* array, std::size_t count, std::vector<Vector>& out
 
 /// Without poses if a position is not finite in one of them.
 PosedSurface surfaceOf(const osg::Geometry& mesh, const AnimationSet& set, const LodLevels::Skinning& skin,
-                       std::size_t poseCount)
+                       std::size_t poseCount, const std::atomic<bool>* stop)
 {
     PosedSurface surface;
+    surface.stop = stop;
     std::vector<AffineMatrix> palette;
     std::vector<glm::dvec3> positions;
     const MeasuredPoses measured(set, poseCount, measuredPerKeyPose * poseCount);
@@ -91,7 +92,7 @@ PosedSurface surfaceOf(const osg::Geometry& mesh, const AnimationSet& set, const
         skin(palette, positions);
         surface.poses.emplace_back(positions.begin(), positions.end());
         const std::vector<glm::vec3>& posed = surface.poses.back();
-        if (!posed.empty() && std::all_of(posed.begin(), posed.end(), isPlaced)) continue;
+        if (!posed.empty() && std::all_of(posed.begin(), posed.end(), isPlaced) && !surface.isStopped()) continue;
         surface.poses.clear();
         return surface;
     }
@@ -252,9 +253,15 @@ LodLevels::LodLevels(const osg::Geometry& mesh)
 
 LodLevels::LodLevels(const osg::Geometry& mesh, const AnimationSet& set, const Skinning& skin) : LodLevels(mesh)
 {
-    const std::size_t vertexCount = _vertices ? _vertices->getNumElements() : 0;
-    if (vertexCount > maxVertices || !isWorthPoses(mesh, set)) return;
-    PosedSurface surface = surfaceOf(mesh, set, skin, poseCountOf(vertexCount));
+    addSteps(mesh, set, skin, nullptr);
+}
+
+void LodLevels::addSteps(const osg::Geometry& copy, const AnimationSet& set, const Skinning& skin,
+                         const std::atomic<bool>* stop)
+{
+    const std::size_t vertexCount = copy.getVertexArray() ? copy.getVertexArray()->getNumElements() : 0;
+    if (vertexCount > maxVertices || !isWorthPoses(copy, set)) return;
+    PosedSurface surface = surfaceOf(copy, set, skin, poseCountOf(vertexCount), stop);
     if (surface.poses.empty()) return;
     const double size = surface.size();
     if (!(size > 0.0)) return;
@@ -265,9 +272,9 @@ LodLevels::LodLevels(const osg::Geometry& mesh, const AnimationSet& set, const S
     for (int attempt = 0; attempt < maxAttempts; ++attempt)
     {
         std::set<std::size_t> beyond;
-        for (Primitives& primitives : _primitives)
-            addSteps(surface, finest, coarsest, primitives, beyond);
-        if (beyond.empty()) break;
+        for (unsigned int i = 0; i < _primitives.size(); ++i)
+            _primitives[i].steps = makeSteps(surface, finest, coarsest, copy.getPrimitiveSet(i), beyond);
+        if (beyond.empty() || surface.isStopped()) break;
         for (const std::size_t pose : beyond)
             std::swap(surface.poses[surface.keyPoses++], surface.poses[pose]);
     }
@@ -276,18 +283,18 @@ LodLevels::LodLevels(const osg::Geometry& mesh, const AnimationSet& set, const S
 }
 
 /// outBeyond: receives poses in which the error of a level is too large: they should be key poses.
-void LodLevels::addSteps(const PosedSurface& surface, int finest, int coarsest, Primitives& primitives,
-                         std::set<std::size_t>& outBeyond) const
+LodLevels::Steps LodLevels::makeSteps(const PosedSurface& surface, int finest, int coarsest,
+                                      const osg::PrimitiveSet* primitives, std::set<std::size_t>& outBeyond) const
 {
-    primitives.steps.clear();
-    const std::vector<std::uint32_t> original = trianglesOf(primitives.original, surface.vertexCount());
-    if (original.size() < 3 * fewTriangles) return;
+    Steps steps;
+    const std::vector<std::uint32_t> original = trianglesOf(primitives, surface.vertexCount());
+    if (original.size() < 3 * fewTriangles) return steps;
     MeshSimplifier simplifier(surface, original);
     const Extent whole = extentOf(surface, original);
     std::size_t kept = original.size() / 3;
     for (int level = finest; level <= coarsest; level += levelsPerOctave)
     {
-        if (simplifier.triangleCount() <= 1) break;
+        if (simplifier.triangleCount() <= 1 || surface.isStopped()) break;
         const double limit = errorOf(level) / (1.0 + maxOutset);
         simplifier.reduce(limit, level < coarsest);
         if (static_cast<double>(simplifier.triangleCount()) >= worthwhile * static_cast<double>(kept)) continue;
@@ -304,11 +311,12 @@ void LodLevels::addSteps(const PosedSurface& surface, int finest, int coarsest, 
                                                        ? makeElements<osg::DrawElementsUShort>(indices)
                                                        : makeElements<osg::DrawElementsUInt>(indices);
         elements->setElementBufferObject(_buffer);
-        while (!primitives.steps.empty() && primitives.steps.back().level >= first)
-            primitives.steps.pop_back();
-        primitives.steps.push_back({first, elements, static_cast<float>(outset), error});
+        while (!steps.empty() && steps.back().level >= first)
+            steps.pop_back();
+        steps.push_back({first, elements, static_cast<float>(outset), error});
         kept = indices.size() / 3;
     }
+    return steps;
 }
 
 void LodLevels::includeRange(const Steps& steps)
@@ -417,6 +425,12 @@ std::shared_ptr<const LodLevels> MeshLod::of(const osg::Geometry& mesh, const An
     auto made = std::make_shared<const LodLevels>(mesh, set, skin);
     std::atomic_store(&_levels, std::shared_ptr<const LodLevels>(made));
     return made;
+}
+
+void MeshLod::forget()
+{
+    ++_forgetCount;
+    set(nullptr);
 }
 
 void MeshLod::set(std::shared_ptr<const LodLevels> levels)

@@ -9,6 +9,7 @@
 
 #include <glm/vec3.hpp>
 
+#include <atomic>
 #include <cstddef>
 #include <functional>
 #include <limits>
@@ -76,6 +77,11 @@ public:
 
     /// The cost is proportional to the mesh's points times poses, see MeshSimplifier.
     LodLevels(const osg::Geometry& mesh, const AnimationSet& set, const Skinning& skin);
+    /// Levels of the mesh without steps, for addSteps().
+    explicit LodLevels(const osg::Geometry& mesh);
+    /// copy: of the mesh as it was in the constructor. skin: the copy's. stop: see PosedSurface.
+    void addSteps(const osg::Geometry& copy, const AnimationSet& set, const Skinning& skin,
+                  const std::atomic<bool>* stop);
 
     /// The reduced triangles of a primitive set.
     struct Step
@@ -126,11 +132,10 @@ private:
         Steps steps;
     };
 
-    explicit LodLevels(const osg::Geometry& mesh); ///< without steps
     Result<void> restore(std::size_t primitiveSet, Steps steps);
     void includeRange(const Steps& steps);
-    void addSteps(const PosedSurface& surface, int finest, int coarsest, Primitives& primitives,
-                  std::set<std::size_t>& outBeyond) const;
+    Steps makeSteps(const PosedSurface& surface, int finest, int coarsest, const osg::PrimitiveSet* primitives,
+                    std::set<std::size_t>& outBeyond) const;
 
     osg::ref_ptr<const osg::Array> _vertices;
     unsigned int _modifiedCount = 0; ///< of the vertices
@@ -156,11 +161,13 @@ public:
     std::shared_ptr<const LodLevels> known(const osg::Geometry& mesh) const;
     void set(std::shared_ptr<const LodLevels> levels); ///< in place of those that of() would create
     /// Discards the levels after a change of influences, morph targets or clips.
-    void forget() { set(nullptr); }
+    void forget();
+    unsigned int forgetCount() const { return _forgetCount; } ///< of calls of forget()
 
 private:
     mutable std::mutex _mutex;
     mutable std::shared_ptr<const LodLevels> _levels; ///< accessed atomically
+    std::atomic<unsigned int> _forgetCount{0};
 };
 
 } // namespace osgGpuAnimation

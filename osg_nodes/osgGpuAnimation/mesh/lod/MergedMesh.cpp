@@ -36,16 +36,19 @@ double MergedMesh::fit()
     _views.fitOutlines(_mesh, maxForOutlines * _limit);
     _views.fitCoverage(_mesh, maxForCoverage * _limit);
     const std::vector<glm::vec3> moved = _mesh.positions;
-    PosedSurface::Poses poses = _parts.posesOf(_mesh);
-    double error = _simplifier.errorOfMoved(poses, _vertexOf);
     // A coarser level would cost more triangles than the moves gain.
-    for (const float share : {0.5f, 0.25f})
+    const double enough = LodLevels::errorOf(LodLevels::levelFor(_limit));
+    PosedSurface::Poses poses;
+    double error = 0.0;
+    for (const float share : {1.0f, 0.5f, 0.25f})
     {
-        if (LodLevels::levelFor(error) <= LodLevels::levelFor(_limit)) break;
+        const bool isLast = share == 0.25f;
         for (std::size_t vertex = 0; vertex < moved.size(); ++vertex)
             _mesh.positions[vertex] = glm::mix(unmoved[vertex], moved[vertex], share);
         poses = _parts.posesOf(_mesh);
-        error = _simplifier.errorOfMoved(poses, _vertexOf);
+        error = _simplifier.errorOfMoved(poses, _vertexOf, isLast ? std::numeric_limits<double>::infinity() : enough,
+                                         _worstPose);
+        if (error <= enough) break;
     }
     _shades = _views.fitColors(_mesh, poses);
     return error;

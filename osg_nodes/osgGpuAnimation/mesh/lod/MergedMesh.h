@@ -33,8 +33,9 @@ public:
     double fit();
     /// See MergedViews::similarity(); of the last fit().
     double similarity(double pixel) const { return _views.similarity(_shades, pixel); }
-    /// The mesh of the last fit().
-    osg::ref_ptr<SkinnedGeometry> make() const { return _parts.geometryOf(_mesh, _views.metallicRoughness()); }
+    /// The mesh of the last fit(), without a StateSet, see SurfaceColor::flatState().
+    osg::ref_ptr<SkinnedGeometry> make() const { return _parts.geometryOf(_mesh); }
+    const osg::Vec2& metallicRoughness() const { return _views.metallicRoughness(); } ///< the mean of the visible map
 
 private:
     void takeTriangles();
@@ -42,7 +43,8 @@ private:
     const MergedParts& _parts;
     MeshSimplifier _simplifier;
     MergedViews _views;
-    double _limit = 0.0; ///< of the last reduce()
+    double _limit = 0.0;        ///< of the last reduce()
+    std::size_t _worstPose = 0; ///< of the last error
     CoarseMesh _mesh;
     MergedViews::Shades _shades;          ///< of _mesh
     std::vector<std::uint32_t> _vertexOf; ///< by point of the simplifier's mesh: in _mesh

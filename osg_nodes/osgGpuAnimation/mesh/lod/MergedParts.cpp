@@ -55,15 +55,15 @@ bool MergedParts::areAlike(const SkinnedGeometry& part, const SkinnedGeometry& o
            osgGpuAnimation::areAlike(*part.getStateSet(), *other.getStateSet());
 }
 
-MergedParts::MergedParts(const Meshes& parts, const Palettes& palettes, std::size_t keyPoseCount)
-    : _parts(parts), _palettes(palettes)
+MergedParts::MergedParts(Parts parts, const Palettes& palettes, std::size_t keyPoseCount, const std::atomic<bool>* stop)
+    : _parts(std::move(parts)), _palettes(palettes)
 {
-    for (const SkinnedGeometry* part : _parts)
-        _colors.push_back(*SurfaceColor::of(*part));
     _surface.keyPoses = keyPoseCount;
+    _surface.stop = stop;
+    _surface.isTwoSided = _parts.front().color.isTwoSided();
     addSurface();
     addTriangles();
-    if (_surface.vertexCount() > maxVertices || _indices.size() > 3 * maxTriangles) return;
+    if (_surface.vertexCount() > maxVertices || _indices.size() > 3 * maxTriangles || _surface.isStopped()) return;
     for (const std::vector<glm::vec3>& pose : _surface.poses)
         if (!std::all_of(pose.begin(), pose.end(), isPlaced)) return;
     for (std::uint32_t vertex = 0; vertex < _surface.vertexCount(); ++vertex)
@@ -80,24 +80,22 @@ void MergedParts::addSurface()
     for (const std::vector<AffineMatrix>& palette : _palettes)
     {
         std::vector<glm::vec3>& pose = _surface.poses.emplace_back();
-        for (const SkinnedGeometry* part : _parts)
+        for (const auto& [part, color] : _parts)
         {
             if (_surface.poses.size() == 1) _firstOf.push_back(static_cast<std::uint32_t>(pose.size()));
             part->computePositions(palette, ofPart);
             ofPart.resize(part->getVertexCount(), glm::dvec3(0.0)); // none if the vertices are no osg::Vec3Array
             pose.insert(pose.end(), ofPart.begin(), ofPart.end());
         }
-        if (pose.size() > maxVertices) return;
+        if (pose.size() > maxVertices || _surface.isStopped()) return;
     }
-    const osg::StateSet& state = *_parts.front()->getStateSet();
-    _surface.isTwoSided = !(state.getMode(GL_CULL_FACE) & osg::StateAttribute::ON);
 }
 
 void MergedParts::addTriangles()
 {
     for (std::size_t part = 0; part < _parts.size(); ++part)
-        for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : _parts[part]->getPrimitiveSetList())
-            for (const std::uint32_t vertex : LodLevels::trianglesOf(primitives, _parts[part]->getVertexCount()))
+        for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : _parts[part].mesh->getPrimitiveSetList())
+            for (const std::uint32_t vertex : LodLevels::trianglesOf(primitives, _parts[part].mesh->getVertexCount()))
                 _indices.push_back(_firstOf[part] + vertex);
 }
 
@@ -112,7 +110,7 @@ SurfaceColor::Look MergedParts::lookAt(const std::uint32_t* triangle, const glm:
 {
     const std::size_t part = sourceOf(triangle[0]).part;
     const std::uint32_t first = _firstOf[part];
-    return _colors[part].at({triangle[0] - first, triangle[1] - first, triangle[2] - first}, shares);
+    return _parts[part].color.at({triangle[0] - first, triangle[1] - first, triangle[2] - first}, shares);
 }
 
 osg::Vec4 MergedParts::colorOf(std::uint32_t vertex) const
@@ -125,7 +123,7 @@ std::vector<glm::vec3> MergedParts::normalsIn(std::size_t pose) const
 {
     std::vector<glm::vec3> normals;
     std::vector<glm::dvec3> ofPart;
-    for (const SkinnedGeometry* part : _parts)
+    for (const auto& [part, color] : _parts)
     {
         part->computeNormals(_palettes[pose], ofPart);
         ofPart.resize(part->getVertexCount(), glm::dvec3(0.0));
@@ -140,12 +138,12 @@ glm::dmat4 MergedParts::matrixOf(std::uint32_t vertex, const std::vector<AffineM
 {
     const Source source = sourceOf(vertex);
     glm::dmat4 sum(0.0);
-    _parts[source.part]->forEachInfluence(source.vertex,
-                                          [&](std::size_t entry, float weight)
-                                          {
-                                              if (entry < palette.size())
-                                                  sum += static_cast<double>(weight) * palette[entry].toColumns();
-                                          });
+    _parts[source.part].mesh->forEachInfluence(source.vertex,
+                                               [&](std::size_t entry, float weight)
+                                               {
+                                                   if (entry < palette.size())
+                                                       sum += static_cast<double>(weight) * palette[entry].toColumns();
+                                               });
     sum[3][3] = 1.0;
     return sum;
 }
@@ -161,7 +159,7 @@ std::vector<glm::dvec3> MergedParts::bindPositionsOf(const CoarseMesh& mesh) con
         bind.emplace_back(glm::inverse(matrix) * glm::dvec4(mesh.positions[vertex], 1.0));
         if (isPlaced(glm::vec3(bind.back()))) continue;
         const osg::Vec3& there =
-            static_cast<const osg::Vec3Array&>(*_parts[source.part]->getVertexArray())[source.vertex];
+            static_cast<const osg::Vec3Array&>(*_parts[source.part].mesh->getVertexArray())[source.vertex];
         bind.back() = glm::dvec3(there.x(), there.y(), there.z());
     }
     return bind;
@@ -185,7 +183,7 @@ glm::mat3 MergedParts::toFirstPose(std::uint32_t vertex, std::size_t pose) const
     return isPlaced(sum) ? turn : glm::mat3(0.0f);
 }
 
-osg::ref_ptr<SkinnedGeometry> MergedParts::geometryOf(const CoarseMesh& mesh, const osg::Vec2& metallicRoughness) const
+osg::ref_ptr<SkinnedGeometry> MergedParts::geometryOf(const CoarseMesh& mesh) const
 {
     osg::ref_ptr<osg::Vec3Array> bindPositions = new osg::Vec3Array;
     osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array;
@@ -202,11 +200,10 @@ osg::ref_ptr<SkinnedGeometry> MergedParts::geometryOf(const CoarseMesh& mesh, co
     geometry->addPrimitiveSet(elements);
     osgUtil::VertexCacheVisitor().optimizeVertices(*geometry); // a card shades each vertex 0.74 times, before: once
     osg::BoundingBox bounds;
-    for (const SkinnedGeometry* part : _parts)
+    for (const auto& [part, color] : _parts)
         bounds.expandBy(part->getBoundingBox());
     geometry->setInitialBound(bounds);
-    geometry->setNodeMask(_parts.front()->getNodeMask());
-    geometry->setStateSet(_colors.front().state(geometry->getInfluenceCount(), metallicRoughness));
+    geometry->setNodeMask(_parts.front().mesh->getNodeMask());
     return geometry;
 }
 
@@ -225,14 +222,15 @@ void MergedParts::setInfluences(const CoarseMesh& mesh, SkinnedGeometry& geometr
     {
         const Source source = sourceOf(mesh.sources[vertex]);
         std::size_t number = 0;
-        _parts[source.part]->forEachInfluence(source.vertex,
-                                              [&](std::size_t entry, float weight)
-                                              {
-                                                  const auto place = static_cast<int>(number % 4);
-                                                  (*entries[number / 4])[vertex][place] = static_cast<GLushort>(entry);
-                                                  (*weights[number / 4])[vertex][place] = weight;
-                                                  ++number;
-                                              });
+        _parts[source.part].mesh->forEachInfluence(source.vertex,
+                                                   [&](std::size_t entry, float weight)
+                                                   {
+                                                       const auto place = static_cast<int>(number % 4);
+                                                       (*entries[number / 4])[vertex][place] =
+                                                           static_cast<GLushort>(entry);
+                                                       (*weights[number / 4])[vertex][place] = weight;
+                                                       ++number;
+                                                   });
         max = std::max(max, number);
     }
     for (unsigned int i = 0; 4 * i < max; ++i)

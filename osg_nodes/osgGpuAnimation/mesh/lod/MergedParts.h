@@ -30,7 +30,12 @@ struct CoarseMesh
 class MergedParts
 {
 public:
-    using Meshes = std::vector<const SkinnedGeometry*>;
+    struct Part
+    {
+        osg::ref_ptr<const SkinnedGeometry> mesh; ///< its StateSet is not read
+        SurfaceColor color;
+    };
+    using Parts = std::vector<Part>;
     using Palettes = std::vector<std::vector<AffineMatrix>>;
     static constexpr std::size_t maxVertices = 20'000;  ///< of the parts together
     static constexpr std::size_t maxTriangles = 40'000; ///< of the parts together
@@ -41,9 +46,10 @@ public:
     /// True if two such meshes have the same node mask and StateSets with the same attributes, modes and uniforms.
     static bool areAlike(const SkinnedGeometry& part, const SkinnedGeometry& other);
 
-    /// parts: accepted and alike; at least one; they must outlive this object. palettes: of the poses in which errors
-    /// are measured; at least one; they must outlive this object. keyPoseCount: of the first of them, see PosedSurface.
-    MergedParts(const Meshes& parts, const Palettes& palettes, std::size_t keyPoseCount);
+    /// parts: of meshes that are accepted and alike; at least one. palettes: of the poses in which errors are measured;
+    /// at least one; they must outlive this object. keyPoseCount: of the first of them, see PosedSurface. stop: see
+    /// PosedSurface.
+    MergedParts(Parts parts, const Palettes& palettes, std::size_t keyPoseCount, const std::atomic<bool>* stop);
 
     /// False: too many vertices or triangles, no extent, or positions that are not finite.
     bool isValid() const { return _isValid; }
@@ -57,15 +63,15 @@ public:
     /// By vertex, of length 1; of length 0: its triangles are flat.
     std::vector<glm::vec3> normalsIn(std::size_t pose) const;
     /// A mean of colours as the colour array stores it.
-    osg::Vec4 stored(const osg::Vec4& color) const { return _colors.front().stored(color); }
+    osg::Vec4 stored(const osg::Vec4& color) const { return _parts.front().color.stored(color); }
 
     /// The mesh's vertices in the first poses.
     PosedSurface::Poses posesOf(const CoarseMesh& mesh,
                                 std::size_t poseCount = std::numeric_limits<std::size_t>::max()) const;
     /// Turns directions at a vertex of the parts in a pose to the first pose; 0 where there is no such turn.
     glm::mat3 toFirstPose(std::uint32_t vertex, std::size_t pose) const;
-    /// metallicRoughness: the mean of the map.
-    osg::ref_ptr<SkinnedGeometry> geometryOf(const CoarseMesh& mesh, const osg::Vec2& metallicRoughness) const;
+    /// Without a StateSet, see SurfaceColor::flatState().
+    osg::ref_ptr<SkinnedGeometry> geometryOf(const CoarseMesh& mesh) const;
 
 private:
     /// A vertex of a part.
@@ -82,9 +88,8 @@ private:
     std::vector<glm::dvec3> bindPositionsOf(const CoarseMesh& mesh) const;
     void setInfluences(const CoarseMesh& mesh, SkinnedGeometry& geometry) const;
 
-    const Meshes _parts;
+    const Parts _parts;
     const Palettes& _palettes;
-    std::vector<SurfaceColor> _colors;   ///< by part
     std::vector<std::uint32_t> _firstOf; ///< by part: its first vertex
     PosedSurface _surface;               ///< with colours for the order of collapses
     std::vector<std::uint32_t> _indices;

@@ -73,19 +73,24 @@ std::vector<glm::vec3> normalsOf(const CoarseMesh& mesh)
     return normals;
 }
 
-/// The nearest of some cells; at least one.
+/// The nearest of some cells, which are in the order of their rows; at least one.
 SurfaceViews::Cell nearest(const SurfaceViews::Cell& cell, const std::vector<SurfaceViews::Cell>& cells)
 {
+    const auto isAbove = [](const SurfaceViews::Cell& other, int row) { return other.y < row; };
+    const auto start = std::lower_bound(cells.begin(), cells.end(), cell.y, isAbove);
     SurfaceViews::Cell found = cells.front();
     int min = std::numeric_limits<int>::max();
-    for (const SurfaceViews::Cell& other : cells)
+    const auto isBeyond = [&](const SurfaceViews::Cell& other)
     {
         const SurfaceViews::Cell way = other - cell;
+        if (way.y * way.y >= min) return true;
         const int squaredDistance = way.x * way.x + way.y * way.y;
-        if (squaredDistance >= min) continue;
-        min = squaredDistance;
-        found = other;
-    }
+        if (squaredDistance < min) found = other;
+        min = std::min(min, squaredDistance);
+        return false;
+    };
+    static_cast<void>(std::find_if(start, cells.end(), isBeyond));
+    static_cast<void>(std::find_if(std::make_reverse_iterator(start), cells.rend(), isBeyond));
     return found;
 }
 
@@ -205,8 +210,9 @@ void MergedViews::fitCoverage(CoarseMesh& mesh, double max) const
     };
     double best = 0.0;
     std::size_t min = std::numeric_limits<std::size_t>::max();
-    for (const double share : {0.0, 0.5, -0.5, 1.0, -1.0})
+    for (const double share : {0.0, 0.5, 1.0, -0.5, -1.0})
     {
+        if (share * best < 0.0 || std::abs(share - best) > 0.5) continue; // the best is beside a better one
         move(share * max);
         const Poses poses = _parts.posesOf(mesh, SurfaceViews::poseCount);
         const std::size_t covered = _views.coveredCells({poses, mesh.indices, false});

@@ -52,23 +52,10 @@ bool hasTextureTransform(const osg::StateSet& state)
            state.getDefineList().count("MATERIAL_TEXTURE_TRANSFORM") > 0;
 }
 
-osg::Vec4 texelAt(const osg::Texture2D& texture, const osg::Vec2& place)
+bool repeats(const osg::Texture2D& texture, osg::Texture::WrapParameter along)
 {
-    const osg::Image& image = *texture.getImage();
-    const auto column = [&](float coordinate, osg::Texture::WrapParameter wrap, int size)
-    {
-        const bool repeats =
-            texture.getWrap(wrap) == osg::Texture::REPEAT || texture.getWrap(wrap) == osg::Texture::MIRROR;
-        const float share = repeats ? coordinate - std::floor(coordinate) : std::min(coordinate, 1.0f);
-        const float texel = share >= 0.0f ? share * static_cast<float>(size) : 0.0f; // NaN: the first
-        return static_cast<unsigned int>(std::min(static_cast<int>(texel), size - 1));
-    };
-    const unsigned char* texel = image.data(column(place.x(), osg::Texture::WRAP_S, image.s()),
-                                            column(place.y(), osg::Texture::WRAP_T, image.t()));
-    const unsigned int components = osg::Image::computeNumComponents(image.getPixelFormat());
-    const auto component = [&](unsigned int i) { return static_cast<float>(texel[i]) / 255.0f; };
-    if (components < 3) return {component(0), component(0), component(0), 1.0f};
-    return {component(0), component(1), component(2), 1.0f};
+    const osg::Texture::WrapMode mode = texture.getWrap(along);
+    return mode == osg::Texture::REPEAT || mode == osg::Texture::MIRROR;
 }
 
 osg::Vec4 colorAt(const osg::Array& colors, std::uint32_t vertex)
@@ -96,21 +83,37 @@ std::optional<const osg::Array*> colorsOf(const SkinnedGeometry& mesh)
 
 } // namespace
 
-std::optional<SurfaceColor> SurfaceColor::of(const SkinnedGeometry& mesh)
+osg::Vec4 SurfaceColor::texelAt(const Map& map, const osg::Vec2& place)
 {
-    const osg::StateSet* state = mesh.getStateSet();
+    const osg::Image& image = *map.image;
+    const auto column = [](float coordinate, bool repeats, int size)
+    {
+        const float share = repeats ? coordinate - std::floor(coordinate) : std::min(coordinate, 1.0f);
+        const float texel = share >= 0.0f ? share * static_cast<float>(size) : 0.0f; // NaN: the first
+        return static_cast<unsigned int>(std::min(static_cast<int>(texel), size - 1));
+    };
+    const unsigned char* texel =
+        image.data(column(place.x(), map.repeatsS, image.s()), column(place.y(), map.repeatsT, image.t()));
+    const unsigned int components = osg::Image::computeNumComponents(image.getPixelFormat());
+    const auto component = [&](unsigned int i) { return static_cast<float>(texel[i]) / 255.0f; };
+    if (components < 3) return {component(0), component(0), component(0), 1.0f};
+    return {component(0), component(1), component(2), 1.0f};
+}
+
+std::optional<SurfaceColor> SurfaceColor::of(const SkinnedGeometry& mesh, const osg::StateSet* state)
+{
     if (!state || !dynamic_cast<const ShaderPermutations*>(state->getAttribute(osg::StateAttribute::PROGRAM)))
         return {};
     if (!isOpaque(*state) || !hasUsualSides(*state) || hasTextureTransform(*state)) return {};
     const std::optional<const osg::Array*> colors = colorsOf(mesh);
     if (!colors) return {};
     SurfaceColor color;
-    color._state = state;
+    color._isTwoSided = !(state->getMode(GL_CULL_FACE) & osg::StateAttribute::ON);
     color._colors = *colors;
     const std::optional<PbrMaterial> material = pbrMaterialOf(*state);
     color._isLinear = material.has_value();
     const osg::StateAttribute* base = state->getTextureAttribute(0, osg::StateAttribute::TEXTURE);
-    std::vector<std::pair<const osg::StateAttribute*, osg::ref_ptr<const osg::Texture2D>*>> maps;
+    std::vector<std::pair<const osg::StateAttribute*, Map*>> maps;
     if (base && !isWhiteTexture(base)) maps.emplace_back(base, &color._baseColor);
     if (material)
     {
@@ -124,7 +127,7 @@ std::optional<SurfaceColor> SurfaceColor::of(const SkinnedGeometry& mesh)
     {
         const auto* picture = dynamic_cast<const osg::Texture2D*>(texture);
         if (!isReadable(picture)) return {};
-        *map = picture;
+        *map = {picture->getImage(), repeats(*picture, osg::Texture::WRAP_S), repeats(*picture, osg::Texture::WRAP_T)};
     }
     if (maps.empty()) return color;
     color._coordinates = dynamic_cast<const osg::Vec2Array*>(mesh.getTexCoordArray(0));
@@ -147,24 +150,25 @@ SurfaceColor::Look SurfaceColor::at(const std::array<std::uint32_t, 3>& corners,
     }
     Look look{ofVertices, {1, 1}};
     look.color.a() = 1.0f;
-    if (_baseColor)
+    if (_baseColor.image)
     {
-        const osg::Vec4 texel = texelAt(*_baseColor, place);
+        const osg::Vec4 texel = texelAt(_baseColor, place);
         look.color = osg::componentMultiply(look.color, _isLinear ? linearColor(texel) : texel);
     }
-    if (_metallicRoughness)
+    if (_metallicRoughness.image)
     {
-        const osg::Vec4 texel = texelAt(*_metallicRoughness, place);
+        const osg::Vec4 texel = texelAt(_metallicRoughness, place);
         look.metallicRoughness.set(texel.b(), texel.g());
     }
     return look;
 }
 
-osg::ref_ptr<osg::StateSet> SurfaceColor::state(int influences, const osg::Vec2& metallicRoughness) const
+osg::ref_ptr<osg::StateSet> SurfaceColor::flatState(const osg::StateSet& ofMesh, int influences,
+                                                    const osg::Vec2& metallicRoughness)
 {
-    osg::ref_ptr<osg::StateSet> state = new osg::StateSet(*_state, osg::CopyOp::SHALLOW_COPY);
+    osg::ref_ptr<osg::StateSet> state = new osg::StateSet(ofMesh, osg::CopyOp::SHALLOW_COPY);
     state->removeTextureAttribute(0, osg::StateAttribute::TEXTURE);
-    std::optional<PbrMaterial> material = pbrMaterialOf(*_state);
+    std::optional<PbrMaterial> material = pbrMaterialOf(ofMesh);
     const bool hasMaps = material && (material->metallicRoughnessMap.texture || material->occlusionMap.texture ||
                                       material->normalMap.texture);
     if (hasMaps)

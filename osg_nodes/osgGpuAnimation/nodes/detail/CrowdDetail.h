@@ -27,10 +27,10 @@ struct CrowdDetail
     static const osg::Group& drawnMeshes(const AnimatedCrowd& crowd);
     static const std::vector<std::size_t>& lists(const AnimatedCrowd& crowd); ///< see CharacterLevels::Lists
 
-    /// The levels of detail of the character as a whole. Null: there was no pixel error yet. setPixelError() creates
-    /// them unless those that are set match the meshes; a pixel error of 0 keeps them.
+    /// The levels of detail of the character as a whole. Null: there was no pixel error yet, or they are being made.
+    /// setPixelError() requests them unless those that are set match the meshes; a pixel error of 0 keeps them.
     static const std::shared_ptr<const CharacterLevels>& levels(const AnimatedCrowd& crowd);
-    /// Sets what setPixelError() would create; call it before.
+    /// Sets what setPixelError() would request; call it before.
     static void setLevels(AnimatedCrowd& crowd, std::shared_ptr<const CharacterLevels> levels);
 };
 

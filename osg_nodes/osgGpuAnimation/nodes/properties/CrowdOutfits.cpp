@@ -79,6 +79,15 @@ const typename Map::mapped_type* find(const Map& map, const typename Map::key_ty
     return found == map.end() ? nullptr : &found->second;
 }
 
+osg::ref_ptr<osg::Uniform> whiteColors()
+{
+    osg::ref_ptr<osg::Uniform> uniform =
+        new osg::Uniform(osg::Uniform::UNSIGNED_INT_VEC4, "poseOutfitColors", POSE_OUTFIT_VECTORS);
+    for (unsigned int vector = 0; vector < POSE_OUTFIT_VECTORS; ++vector)
+        uniform->setElement(vector, ~0u, ~0u, ~0u, ~0u);
+    return uniform;
+}
+
 /// The number shows the mesh in that state.
 template <typename States>
 void addTo(States& states, osg::StateSet* state, std::size_t number)
@@ -224,35 +233,29 @@ void CrowdOutfits::forEachOutfit(Function function) const
         if (_outfits[i]) function(static_cast<Number>(i + 1), *_outfits[i]);
 }
 
-/// The colours of each material that some outfit colours, white for the others.
+/// The colours of each material that some outfit colours, white for the others. A uniform does not change: draws of the
+/// frame before may read it.
 void CrowdOutfits::makeUniforms()
 {
-    const std::map<std::string, osg::ref_ptr<osg::Uniform>> before = std::move(_colors);
-    _colors.clear();
-    const auto set = [&](Number number, const std::string& material, const osg::Vec4& color)
-    {
-        osg::ref_ptr<osg::Uniform>& uniform = _colors[material];
-        if (!uniform)
-        {
-            const osg::ref_ptr<osg::Uniform>* known = find(before, material);
-            uniform = known
-                          ? known->get()
-                          : new osg::Uniform(osg::Uniform::UNSIGNED_INT_VEC4, "poseOutfitColors", POSE_OUTFIT_VECTORS);
-            for (unsigned int vector = 0; vector < POSE_OUTFIT_VECTORS; ++vector)
-                uniform->setElement(vector, ~0u, ~0u, ~0u, ~0u);
-        }
-        const unsigned int vector = number / POSE_OUTFITS_PER_VECTOR;
-        unsigned int colors[POSE_OUTFITS_PER_VECTOR] = {};
-        uniform->getElement(vector, colors[0], colors[1], colors[2], colors[3]);
-        colors[number % POSE_OUTFITS_PER_VECTOR] = toRgba(color);
-        uniform->setElement(vector, colors[0], colors[1], colors[2], colors[3]);
-    };
+    std::map<std::string, osg::ref_ptr<osg::Uniform>> made;
     forEachOutfit(
         [&](Number number, const Outfit& outfit)
         {
             for (const auto& [material, color] : outfit.getColors())
-                set(number, material, color);
+            {
+                osg::ref_ptr<osg::Uniform>& uniform = made[material];
+                if (!uniform) uniform = whiteColors();
+                const unsigned int vector = number / POSE_OUTFITS_PER_VECTOR;
+                unsigned int colors[POSE_OUTFITS_PER_VECTOR] = {};
+                uniform->getElement(vector, colors[0], colors[1], colors[2], colors[3]);
+                colors[number % POSE_OUTFITS_PER_VECTOR] = toRgba(color);
+                uniform->setElement(vector, colors[0], colors[1], colors[2], colors[3]);
+            }
         });
+    for (auto& [material, uniform] : made)
+        if (const osg::ref_ptr<osg::Uniform>* known = find(_colors, material); known && **known == *uniform)
+            uniform = *known;
+    _colors = std::move(made);
 }
 
 /// The StateSet with the outfit's picture, and with the colours of all outfits. outfit: null: without a picture.
@@ -342,8 +345,8 @@ void CrowdOutfits::showProps()
 
 void CrowdOutfits::make(const osg::Group& crowd)
 {
-    _before = std::move(_shown);
-    _statesBefore = std::move(_states);
+    if (!_shown.empty()) _before = std::move(_shown);
+    if (!_states.empty()) _statesBefore = std::move(_states);
     _states.clear();
     _meshes->removeChildren(0, _meshes->getNumChildren());
     _sources.clear();

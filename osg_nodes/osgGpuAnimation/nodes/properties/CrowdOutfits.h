@@ -29,8 +29,12 @@ public:
     using Number = std::uint16_t; ///< of an outfit, in [1, OutfitLists::maxOutfits]; 0: none
 
     CrowdOutfits() = default;
-    /// The same outfits. The first update() makes the meshes.
-    CrowdOutfits(const CrowdOutfits& other) : _outfits(other._outfits), _props(other._props) {}
+    /// The same outfits. update() makes the meshes, which are the same for the same crowd's meshes.
+    CrowdOutfits(const CrowdOutfits& other)
+        : _outfits(other._outfits), _props(other._props), _before(other._shown), _colors(other._colors),
+          _statesBefore(other._states)
+    {
+    }
     CrowdOutfits& operator=(const CrowdOutfits&) = delete;
 
     /// Errors: see AnimatedCrowd::addOutfit().

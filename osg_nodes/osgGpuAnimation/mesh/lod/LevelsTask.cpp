@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/mesh/detail/MeshDetail.h>
+#include <osgGpuAnimation/mesh/lod/LevelsTask.h>
+
+#include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <optional>
+#include <thread>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// function(const SkinnedGeometry&), for the meshes that may have levels.
+template <typename Function>
+void forEachMeshWithLevels(const osg::Group& meshes, Function function)
+{
+    std::size_t vertices = 0;
+    forEachMesh(meshes,
+                [&](const SkinnedGeometry& mesh)
+                {
+                    vertices += mesh.getVertexCount();
+                    if (vertices <= LevelsTask::maxVertices) function(mesh);
+                });
+}
+
+} // namespace
+
+/// What the thread reads and makes. It owns no nodes and no StateSets, so the thread deletes none.
+class LevelsTask::Work
+{
+public:
+    struct Mesh
+    {
+        osg::ref_ptr<const SkinnedGeometry> copy; ///< null after the work
+        std::shared_ptr<const LodLevels> levels;
+        std::shared_ptr<LodLevels> missing; ///< the same, to be made; null: they exist
+    };
+
+    explicit Work(std::shared_ptr<const AnimationSet> set) : _set(std::move(set)) {}
+
+    std::vector<Mesh> meshes;
+    std::optional<CharacterLevels::Sources> sources; ///< none: nothing to merge
+    std::vector<CharacterLevels::Made> made;         ///< after the work
+
+    void stop() { _stop = true; }
+    bool isStopped() const { return _stop; }
+    bool isDone() const { return _isDone; }
+    void runOnce()
+    {
+        if (_isBegun.exchange(true)) return;
+        run();
+        const std::lock_guard<std::mutex> lock(_mutex);
+        _isDone = true;
+        _done.notify_all();
+    }
+    void wait()
+    {
+        runOnce();
+        std::unique_lock<std::mutex> lock(_mutex);
+        _done.wait(lock, [&] { return _isDone.load(); });
+    }
+
+private:
+    void run()
+    {
+        CharacterLevels::Sources::Levels levels;
+        for (Mesh& mesh : meshes)
+        {
+            const auto skin = [&](const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& out)
+            { mesh.copy->computePositions(palette, out); };
+            if (mesh.missing && !_stop) mesh.missing->addSteps(*mesh.copy, *_set, skin, &_stop);
+            levels.push_back(mesh.levels);
+        }
+        if (sources && !_stop) made = sources->make(*_set, levels, &_stop);
+        sources.reset();
+        meshes.clear();
+    }
+
+    const std::shared_ptr<const AnimationSet> _set;
+    std::atomic<bool> _stop{false}, _isBegun{false}, _isDone{false};
+    std::mutex _mutex;
+    std::condition_variable _done;
+};
+
+namespace
+{
+
+/// The thread that does work, in the order of its arrival. It begins with the first work.
+template <typename Work>
+class Worker
+{
+public:
+    static void add(const std::shared_ptr<Work>& work)
+    {
+        if (isGone()) return; // the process ends; wait() still works
+        static Worker worker;
+        worker.append(work);
+    }
+
+private:
+    Worker() : _thread(&Worker::run, this) {}
+    ~Worker()
+    {
+        isGone() = true;
+        {
+            const std::lock_guard<std::mutex> lock(_mutex);
+            _isEnding = true;
+            if (_running) _running->stop();
+        }
+        _changed.notify_one();
+        _thread.join();
+    }
+
+    static std::atomic<bool>& isGone()
+    {
+        static std::atomic<bool> is{false};
+        return is;
+    }
+
+    void append(const std::shared_ptr<Work>& work)
+    {
+        {
+            const std::lock_guard<std::mutex> lock(_mutex);
+            _queue.push_back(work);
+        }
+        _changed.notify_one();
+    }
+
+    void run()
+    {
+        std::unique_lock<std::mutex> lock(_mutex);
+        while (true)
+        {
+            _changed.wait(lock, [&] { return _isEnding || !_queue.empty(); });
+            if (_isEnding) return;
+            _running = std::move(_queue.front());
+            _queue.pop_front();
+            lock.unlock();
+            if (!_running->isStopped()) _running->runOnce();
+            lock.lock();
+            _running = nullptr;
+        }
+    }
+
+    std::mutex _mutex;
+    std::condition_variable _changed;
+    std::deque<std::shared_ptr<Work>> _queue;
+    std::shared_ptr<Work> _running;
+    bool _isEnding = false;
+    std::thread _thread; ///< the last member: it uses the others
+};
+
+} // namespace
+
+bool LevelsTask::areMissing(const osg::Group& meshes)
+{
+    bool areMissing = false;
+    forEachMeshWithLevels(meshes, [&](const SkinnedGeometry& mesh)
+                          { areMissing = areMissing || !MeshDetail::findLevels(mesh); });
+    return areMissing;
+}
+
+std::shared_ptr<LevelsTask> LevelsTask::of(const osg::Group& meshes, const std::shared_ptr<const AnimationSet>& set,
+                                           bool isMerged, const CharacterLevels::Lists& lists)
+{
+    static std::mutex mutex;
+    static std::vector<std::weak_ptr<LevelsTask>> tasks;
+    const std::lock_guard<std::mutex> lock(mutex);
+    tasks.erase(std::remove_if(tasks.begin(), tasks.end(), [](const auto& task) { return task.expired(); }),
+                tasks.end());
+    for (const std::weak_ptr<LevelsTask>& known : tasks)
+    {
+        const std::shared_ptr<LevelsTask> task = known.lock();
+        if (task && task->isOf(meshes, *set, isMerged, lists)) return task;
+    }
+    const std::shared_ptr<LevelsTask> task(new LevelsTask(meshes, set, isMerged, lists));
+    tasks.push_back(task);
+    Worker<Work>::add(task->_work);
+    return task;
+}
+
+LevelsTask::LevelsTask(const osg::Group& meshes, const std::shared_ptr<const AnimationSet>& set, bool isMerged,
+                       const CharacterLevels::Lists& lists)
+    : _set(set), _merged(isMerged ? CharacterLevels::unmade(meshes, *set, lists) : nullptr),
+      _work(std::make_shared<Work>(set))
+{
+    std::vector<CharacterLevels::Sources::Mesh> sources;
+    std::size_t number = 0;
+    forEachMeshWithLevels(meshes,
+                          [&](const SkinnedGeometry& mesh)
+                          {
+                              const std::shared_ptr<const LodLevels> known = MeshDetail::findLevels(mesh);
+                              const std::shared_ptr<LodLevels> alike = known ? nullptr : levelsLike(mesh);
+                              const std::shared_ptr<LodLevels> missing =
+                                  known || alike ? nullptr : std::make_shared<LodLevels>(mesh);
+                              const std::shared_ptr<LodLevels> made = missing ? missing : alike;
+                              _meshes.push_back({&mesh, MeshDetail::forgetCount(mesh), made});
+                              const bool isRead = isMerged || missing;
+                              const osg::ref_ptr<const SkinnedGeometry> copy =
+                                  isRead ? MeshDetail::snapshot(mesh) : nullptr;
+                              _work->meshes.push_back({copy, known ? known : made, missing});
+                              sources.push_back({&mesh, copy, number < lists.size() ? lists[number] : 0});
+                              ++number;
+                          });
+    if (!isMerged) return;
+    _work->sources.emplace(sources);
+    if (_work->sources->isEmpty()) _work->sources.reset();
+}
+
+/// Those of an earlier mesh with the same arrays, such as a copy in another state; null: there is none.
+std::shared_ptr<LodLevels> LevelsTask::levelsLike(const SkinnedGeometry& mesh) const
+{
+    const auto isLike = [&](const Mesh& known)
+    {
+        return known.levels && known.levels->isOf(mesh) && known.mesh->getEntries(0) == mesh.getEntries(0) &&
+               known.mesh->getRigidEntry() == mesh.getRigidEntry();
+    };
+    const auto found = std::find_if(_meshes.begin(), _meshes.end(), isLike);
+    return found == _meshes.end() ? nullptr : found->levels;
+}
+
+LevelsTask::~LevelsTask()
+{
+    _work->stop();
+}
+
+bool LevelsTask::Mesh::isOf(const SkinnedGeometry& present) const
+{
+    return levels && &present == mesh && forgetCount == MeshDetail::forgetCount(present) && levels->isOf(present);
+}
+
+bool LevelsTask::isOf(const osg::Group& meshes, const AnimationSet& set, bool isMerged,
+                      const CharacterLevels::Lists& lists) const
+{
+    if (&set != _set.get() || (isMerged && !(_merged && _merged->isOf(meshes, set, lists)))) return false;
+    bool isOf = true;
+    forEachMeshWithLevels(meshes,
+                          [&](const SkinnedGeometry& mesh)
+                          {
+                              isOf = isOf && (MeshDetail::findLevels(mesh) ||
+                                              std::any_of(_meshes.begin(), _meshes.end(),
+                                                          [&](const Mesh& own) { return own.isOf(mesh); }));
+                          });
+    return isOf;
+}
+
+bool LevelsTask::isDone() const
+{
+    return _work->isDone();
+}
+
+void LevelsTask::wait()
+{
+    _work->wait();
+}
+
+std::shared_ptr<const CharacterLevels> LevelsTask::take()
+{
+    const std::lock_guard<std::mutex> lock(_takeMutex);
+    if (!_isTaken && !_work->isStopped())
+    {
+        for (const Mesh& own : _meshes)
+            if (own.isOf(*own.mesh)) MeshDetail::setLevels(const_cast<SkinnedGeometry&>(*own.mesh), own.levels);
+        if (_merged) _merged->includeMade(std::move(_work->made));
+        _isTaken = true;
+    }
+    // Owners of the levels keep the task, so that of() finds it for other nodes.
+    return _merged ? std::shared_ptr<const CharacterLevels>(shared_from_this(), _merged.get()) : nullptr;
+}
+
+} // namespace osgGpuAnimation

@@ -32,15 +32,15 @@ void forEachMeshWithLevels(const osg::Group& meshes, Function function)
 
 } // namespace
 
-/// What the thread reads and makes. It owns no nodes and no StateSets, so the thread deletes none.
+/// What the thread reads and makes. It owns nothing of the application but pictures.
 class LevelsTask::Work
 {
 public:
     struct Mesh
     {
         osg::ref_ptr<const SkinnedGeometry> copy; ///< null after the work
-        std::shared_ptr<const LodLevels> levels;
-        std::shared_ptr<LodLevels> missing; ///< the same, to be made; null: they exist
+        std::shared_ptr<LodLevels> levels;        ///< of the copy; null: not needed
+        bool isMissing;                           ///< false: they have steps from the beginning
     };
 
     explicit Work(std::shared_ptr<const AnimationSet> set) : _set(std::move(set)) {}
@@ -75,12 +75,13 @@ private:
         {
             const auto skin = [&](const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& out)
             { mesh.copy->computePositions(palette, out); };
-            if (mesh.missing && !_stop) mesh.missing->addSteps(*mesh.copy, *_set, skin, &_stop);
+            if (mesh.isMissing && !_stop) mesh.levels->addSteps(*mesh.copy, *_set, skin, &_stop);
             levels.push_back(mesh.levels);
         }
         if (sources && !_stop) made = sources->make(*_set, levels, &_stop);
         sources.reset();
-        meshes.clear();
+        for (Mesh& mesh : meshes)
+            mesh.copy = nullptr;
     }
 
     const std::shared_ptr<const AnimationSet> _set;
@@ -190,19 +191,20 @@ LevelsTask::LevelsTask(const osg::Group& meshes, const std::shared_ptr<const Ani
     : _set(set), _merged(isMerged ? CharacterLevels::unmade(meshes, *set) : nullptr), _work(std::make_shared<Work>(set))
 {
     std::vector<CharacterLevels::Sources::Mesh> sources;
-    forEachMeshWithLevels(meshes,
-                          [&](const SkinnedGeometry& mesh)
-                          {
-                              std::shared_ptr<const LodLevels> known = MeshDetail::findLevels(mesh);
-                              const std::shared_ptr<LodLevels> missing =
-                                  known ? nullptr : std::make_shared<LodLevels>(mesh);
-                              _meshes.push_back({&mesh, MeshDetail::forgetCount(mesh), missing});
-                              const bool isRead = isMerged || missing;
-                              const osg::ref_ptr<const SkinnedGeometry> copy =
-                                  isRead ? MeshDetail::snapshot(mesh) : nullptr;
-                              _work->meshes.push_back({copy, missing ? missing : std::move(known), missing});
-                              sources.push_back({&mesh, copy});
-                          });
+    forEachMeshWithLevels(
+        meshes,
+        [&](const SkinnedGeometry& mesh)
+        {
+            const std::shared_ptr<const LodLevels> known = MeshDetail::findLevels(mesh);
+            const bool isMissing = !known, isRead = isMerged || isMissing;
+            const osg::ref_ptr<const SkinnedGeometry> copy = isRead ? MeshDetail::snapshot(mesh) : nullptr;
+            const std::shared_ptr<LodLevels> levels = isRead ? std::make_shared<LodLevels>(*copy) : nullptr;
+            if (levels && known) levels->shareSteps(*known);
+            _meshes.push_back(
+                {&mesh, MeshDetail::forgetCount(mesh), isMissing ? std::make_shared<LodLevels>(mesh) : nullptr});
+            _work->meshes.push_back({copy, levels, isMissing});
+            sources.push_back({&mesh, copy});
+        });
     if (!isMerged) return;
     _work->sources.emplace(sources);
     if (_work->sources->isEmpty()) _work->sources.reset();
@@ -247,8 +249,13 @@ std::shared_ptr<const CharacterLevels> LevelsTask::take()
     const std::lock_guard<std::mutex> lock(_takeMutex);
     if (!_isTaken && !_work->isStopped())
     {
-        for (const Mesh& own : _meshes)
-            if (own.isOf(*own.mesh)) MeshDetail::setLevels(const_cast<SkinnedGeometry&>(*own.mesh), own.levels);
+        for (std::size_t i = 0; i < _meshes.size(); ++i)
+        {
+            const Mesh& own = _meshes[i];
+            if (!own.isOf(*own.mesh)) continue;
+            own.levels->shareSteps(*_work->meshes[i].levels);
+            MeshDetail::setLevels(const_cast<SkinnedGeometry&>(*own.mesh), own.levels);
+        }
         if (_merged) _merged->includeMade(std::move(_work->made));
         _isTaken = true;
     }

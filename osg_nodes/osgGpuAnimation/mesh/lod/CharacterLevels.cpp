@@ -145,7 +145,10 @@ std::vector<CharacterLevels::Made> CharacterLevels::Sources::make(const Animatio
     MergedParts::Palettes palettes;
     const MeasuredPoses measured(set, LodLevels::poseCountOf(_vertexCount, posedVertices), otherPoses);
     for (const PoseInstruction& pose : measured.poses)
+    {
+        if (stop && *stop) return made;
         Pose::evaluate(set, pose, AffineMatrix(), palettes.emplace_back());
+    }
     for (const Group& group : _groups)
     {
         const MergedParts parts(group.parts, palettes, measured.keyPoseCount, stop);

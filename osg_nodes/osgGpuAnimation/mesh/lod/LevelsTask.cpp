@@ -32,15 +32,15 @@ void forEachMeshWithLevels(const osg::Group& meshes, Function function)
 
 } // namespace
 
-/// What the thread reads and makes. It owns no nodes and no StateSets, so the thread deletes none.
+/// What the thread reads and makes. It owns nothing of the application but pictures.
 class LevelsTask::Work
 {
 public:
     struct Mesh
     {
         osg::ref_ptr<const SkinnedGeometry> copy; ///< null after the work
-        std::shared_ptr<const LodLevels> levels;
-        std::shared_ptr<LodLevels> missing; ///< the same, to be made; null: they exist
+        std::shared_ptr<LodLevels> levels;        ///< of the copy; null: not needed
+        bool isMissing;                           ///< false: they have steps from the beginning
     };
 
     explicit Work(std::shared_ptr<const AnimationSet> set) : _set(std::move(set)) {}
@@ -75,12 +75,13 @@ private:
         {
             const auto skin = [&](const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& out)
             { mesh.copy->computePositions(palette, out); };
-            if (mesh.missing && !_stop) mesh.missing->addSteps(*mesh.copy, *_set, skin, &_stop);
+            if (mesh.isMissing && !_stop) mesh.levels->addSteps(*mesh.copy, *_set, skin, &_stop);
             levels.push_back(mesh.levels);
         }
         if (sources && !_stop) made = sources->make(*_set, levels, &_stop);
         sources.reset();
-        meshes.clear();
+        for (Mesh& mesh : meshes)
+            mesh.copy = nullptr;
     }
 
     const std::shared_ptr<const AnimationSet> _set;
@@ -198,14 +199,15 @@ LevelsTask::LevelsTask(const osg::Group& meshes, const std::shared_ptr<const Ani
                           {
                               const std::shared_ptr<const LodLevels> known = MeshDetail::findLevels(mesh);
                               const std::shared_ptr<LodLevels> alike = known ? nullptr : levelsLike(mesh);
-                              const std::shared_ptr<LodLevels> missing =
-                                  known || alike ? nullptr : std::make_shared<LodLevels>(mesh);
-                              const std::shared_ptr<LodLevels> made = missing ? missing : alike;
-                              _meshes.push_back({&mesh, MeshDetail::forgetCount(mesh), made});
-                              const bool isRead = isMerged || missing;
+                              const bool isMissing = !known && !alike, isRead = isMerged || isMissing;
                               const osg::ref_ptr<const SkinnedGeometry> copy =
                                   isRead ? MeshDetail::snapshot(mesh) : nullptr;
-                              _work->meshes.push_back({copy, known ? known : made, missing});
+                              std::shared_ptr<LodLevels> levels = alike;
+                              if (isRead && !alike) levels = std::make_shared<LodLevels>(*copy);
+                              if (levels && known) levels->shareSteps(*known);
+                              _meshes.push_back({&mesh, MeshDetail::forgetCount(mesh),
+                                                 known ? nullptr : std::make_shared<LodLevels>(mesh)});
+                              _work->meshes.push_back({copy, levels, isMissing});
                               sources.push_back({&mesh, copy, number < lists.size() ? lists[number] : 0});
                               ++number;
                           });
@@ -214,16 +216,18 @@ LevelsTask::LevelsTask(const osg::Group& meshes, const std::shared_ptr<const Ani
     if (_work->sources->isEmpty()) _work->sources.reset();
 }
 
-/// Those of an earlier mesh with the same arrays, such as a copy in another state; null: there is none.
+/// What the thread makes for an earlier mesh with the same arrays, such as a copy in another state; null: there is
+/// none.
 std::shared_ptr<LodLevels> LevelsTask::levelsLike(const SkinnedGeometry& mesh) const
 {
-    const auto isLike = [&](const Mesh& known)
+    for (std::size_t i = 0; i < _meshes.size(); ++i)
     {
-        return known.levels && known.levels->isOf(mesh) && known.mesh->getEntries(0) == mesh.getEntries(0) &&
-               known.mesh->getRigidEntry() == mesh.getRigidEntry();
-    };
-    const auto found = std::find_if(_meshes.begin(), _meshes.end(), isLike);
-    return found == _meshes.end() ? nullptr : found->levels;
+        const Mesh& known = _meshes[i];
+        if (known.levels && known.levels->isOf(mesh) && known.mesh->getEntries(0) == mesh.getEntries(0) &&
+            known.mesh->getRigidEntry() == mesh.getRigidEntry())
+            return _work->meshes[i].levels;
+    }
+    return nullptr;
 }
 
 LevelsTask::~LevelsTask()
@@ -266,8 +270,13 @@ std::shared_ptr<const CharacterLevels> LevelsTask::take()
     const std::lock_guard<std::mutex> lock(_takeMutex);
     if (!_isTaken && !_work->isStopped())
     {
-        for (const Mesh& own : _meshes)
-            if (own.isOf(*own.mesh)) MeshDetail::setLevels(const_cast<SkinnedGeometry&>(*own.mesh), own.levels);
+        for (std::size_t i = 0; i < _meshes.size(); ++i)
+        {
+            const Mesh& own = _meshes[i];
+            if (!own.isOf(*own.mesh)) continue;
+            own.levels->shareSteps(*_work->meshes[i].levels);
+            MeshDetail::setLevels(const_cast<SkinnedGeometry&>(*own.mesh), own.levels);
+        }
         if (_merged) _merged->includeMade(std::move(_work->made));
         _isTaken = true;
     }

@@ -319,6 +319,15 @@ LodLevels::Steps LodLevels::makeSteps(const PosedSurface& surface, int finest, i
     return steps;
 }
 
+void LodLevels::shareSteps(const LodLevels& other)
+{
+    for (std::size_t i = 0; i < _primitives.size(); ++i)
+        _primitives[i].steps = other._primitives[i].steps;
+    _buffer = other._buffer;
+    _finest = other._finest;
+    _coarsest = other._coarsest;
+}
+
 void LodLevels::includeRange(const Steps& steps)
 {
     if (steps.empty()) return;

@@ -82,6 +82,8 @@ public:
     /// copy: of the mesh as it was in the constructor. skin: the copy's. stop: see PosedSurface.
     void addSteps(const osg::Geometry& copy, const AnimationSet& set, const Skinning& skin,
                   const std::atomic<bool>* stop);
+    /// Shares the steps of the levels of a mesh with equal vertices and primitives.
+    void shareSteps(const LodLevels& other);
 
     /// The reduced triangles of a primitive set.
     struct Step

@@ -106,7 +106,7 @@ int addPeopleStaff(GltfDocument& document)
 {
     std::vector<glm::dvec3> places;
     std::vector<double> radii;
-    for (const auto& [x, y, z, radius] : {std::array{0.004, -0.805, 0.004, 0.012},
+    for (const auto& [x, y, z, radius] : {std::array{0.004, -0.768, 0.004, 0.012},
                                           {-0.005, -0.600, 0.000, 0.015},
                                           {0.004, -0.350, -0.004, 0.016},
                                           {0.000, -0.120, 0.000, 0.016},

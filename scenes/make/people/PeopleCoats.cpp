@@ -88,7 +88,7 @@ void addCoat(CharacterMesh& mesh)
     addCollar(mesh);
     mesh.wear("Coat", "Leather");
     addWandererBelt(mesh);
-    mesh.wear("Coat", "Brass");
+    mesh.wear("Coat", "Fittings");
     addWandererBuckle(mesh);
     addWandererButtons(mesh);
 }

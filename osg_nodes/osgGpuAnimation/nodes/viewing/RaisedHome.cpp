@@ -13,7 +13,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-constexpr double margin = 1.2; ///< size of the window relative to the points in it
+constexpr double margin = 1.12; ///< size of the window relative to the points in it
 
 /// What the window must show: the first pose, and how far the present clips reach along each axis. The corners of that
 /// box would make the model too small.

@@ -15,21 +15,6 @@ namespace
 
 constexpr double margin = 1.12; ///< size of the window relative to the points in it
 
-/// What the window must show: the first pose, and how far the present clips reach along each axis. The corners of that
-/// box would make the model too small.
-std::vector<osg::Vec3d> shownPoints(osg::Group& group)
-{
-    std::vector<osg::Vec3d> points = pointsOf(group);
-    const osg::BoundingBoxd box = extentOf(group);
-    for (int axis = 0; axis < 3 && box.valid(); ++axis)
-        for (const osg::Vec3d& end : {box._min, box._max})
-        {
-            points.push_back(box.center());
-            points.back()[axis] = end[axis];
-        }
-    return points;
-}
-
 } // namespace
 
 RaisedHome::RaisedHome(const RaisedHome& other, const osg::CopyOp& copyop)
@@ -49,7 +34,7 @@ bool RaisedHome::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAda
     double fieldOfView = 0.0, aspect = 1.0, zNear = 0.0, zFar = 0.0;
     if (!view->getCamera()->getProjectionMatrixAsPerspective(fieldOfView, aspect, zNear, zFar)) return false;
     osg::Group* const group = node->asGroup();
-    const std::vector<osg::Vec3d> points = group ? shownPoints(*group) : std::vector<osg::Vec3d>();
+    const std::vector<osg::Vec3d> points = group ? sweptPointsOf(*group) : std::vector<osg::Vec3d>();
     if (points.empty()) return false;
 
     Standpoint place = raisedStandpoint(points, fieldOfView, aspect, margin);

@@ -37,7 +37,7 @@ bool RaisedHome::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAda
     const std::vector<osg::Vec3d> points = group ? sweptPointsOf(*group) : std::vector<osg::Vec3d>();
     if (points.empty()) return false;
 
-    Standpoint place = raisedStandpoint(points, fieldOfView, aspect, margin);
+    Standpoint place = standpointFrom(fillingDirection(points), points, fieldOfView, aspect, margin);
     const osg::Matrixd toWorld = osg::computeLocalToWorld(visitor->getNodePath());
     const osg::Vec3d up = osg::Matrixd::transform3x3(osg::Vec3d(0, 0, 1), toWorld);
     place.eye = place.eye * toWorld;

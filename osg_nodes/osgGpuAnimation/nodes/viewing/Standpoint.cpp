@@ -16,10 +16,6 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// From in front, a little from the side and from above: towards (0.55, -1, 0.3).
-const ViewDirection raisedDirection{osg::RadiansToDegrees(std::atan2(0.55, 1.0)),
-                                    osg::RadiansToDegrees(std::atan2(0.3, std::hypot(0.55, 1.0)))};
-
 /// The distance from the middle along `back` at which the picture holds all points. tangent: of half the height.
 double fittingDistance(const std::vector<osg::Vec3d>& points, const Standpoint& place, const osg::Vec3d (&axes)[3],
                        double tangent, double aspect)
@@ -119,15 +115,21 @@ Standpoint standpointFrom(const ViewDirection& direction, const std::vector<osg:
 
 Standpoint raisedStandpoint(const std::vector<osg::Vec3d>& points, double fieldOfView, double aspect, double margin)
 {
+    osg::Vec3d back(0.55, -1.0, 0.3);
+    back.normalize();
+    return fittingStandpoint(back, osg::Vec3d(0, 0, 1), points, fieldOfView, aspect, margin);
+}
+
+ViewDirection fillingDirection(const std::vector<osg::Vec3d>& points)
+{
     constexpr double step = 4.0, maxElevation = 35.0; // degrees
     constexpr double enough = 0.6;                    // height by width: from there on, windows are well filled
-    ViewDirection direction = raisedDirection;
+    ViewDirection direction{osg::RadiansToDegrees(std::atan2(0.55, 1.0)),
+                            osg::RadiansToDegrees(std::atan2(0.3, std::hypot(0.55, 1.0)))};
     if (lieFlat(points))
         while (proportionOf(points, direction) < enough && direction.elevation + step <= maxElevation)
             direction.elevation += step;
-    Standpoint place = standpointFrom(direction, points, fieldOfView, aspect, margin);
-    place.up = {0, 0, 1};
-    return place;
+    return direction;
 }
 
 void goHome(const osgGA::GUIEventAdapter& event, osgViewer::View& view, const Standpoint& place, const osg::Vec3d& up)

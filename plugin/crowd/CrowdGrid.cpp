@@ -12,6 +12,7 @@
 #include <osg/Notify>
 
 #include <algorithm>
+#include <optional>
 #include <random>
 
 namespace osgGpuAnimation::crowd
@@ -46,24 +47,35 @@ Result<std::vector<std::size_t>> findClips(const AnimationSet& set, const std::v
     return clips;
 }
 
-/// The larger horizontal side of the clips' boxes under the character's placement; 1 if the boxes are empty.
-double widthOf(const AnimatedCharacter& character, const osg::Matrixd& placement, const std::vector<std::size_t>& clips,
-               bool isYUp)
+/// The larger horizontal side of a clip's box under the character's placement; nothing if the box is empty.
+std::optional<double> widthOf(const AnimatedCharacter& character, const osg::Matrixd& placement, int clip, bool isYUp)
 {
+    const osg::BoundingBox box = character.getClipBounds(clip);
     osg::BoundingBoxd placed;
+    for (unsigned int i = 0; i < 8 && box.valid(); ++i)
+        placed.expandBy(osg::Vec3d(box.corner(i)) * placement);
+    if (!placed.valid()) return std::nullopt;
+    const osg::Vec3d size = placed._max - placed._min;
+    const double width = std::max(size.x(), isYUp ? size.z() : size.y());
+    return width > 0.0 ? std::optional(width) : std::nullopt;
+}
+
+/// The width that half of the clips do not exceed: a few clips, such as a fall, do not spread out the crowd. 1 if the
+/// boxes are empty.
+double medianWidth(const AnimatedCharacter& character, const osg::Matrixd& placement,
+                   const std::vector<std::size_t>& clips, bool isYUp)
+{
+    std::vector<double> widths;
     const auto add = [&](int clip)
     {
-        const osg::BoundingBox box = character.getClipBounds(clip);
-        for (unsigned int i = 0; i < 8 && box.valid(); ++i)
-            placed.expandBy(osg::Vec3d(box.corner(i)) * placement);
+        if (const std::optional<double> width = widthOf(character, placement, clip, isYUp)) widths.push_back(*width);
     };
     if (clips.empty()) add(-1);
     for (const std::size_t clip : clips)
         add(static_cast<int>(clip));
-    if (!placed.valid()) return 1.0;
-    const osg::Vec3d size = placed._max - placed._min;
-    const double width = std::max(size.x(), isYUp ? size.z() : size.y());
-    return width > 0.0 ? width : 1.0;
+    if (widths.empty()) return 1.0;
+    std::sort(widths.begin(), widths.end());
+    return widths[widths.size() / 2];
 }
 
 /// True if the model draws meshes that belong to no character.
@@ -130,7 +142,7 @@ Result<osg::ref_ptr<AnimatedCrowd>> makeCrowd(osg::Node& model, const CrowdOptio
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*character);
     const osg::Matrixd placement = character->getWorldMatrices().front();
     const double spacing =
-        options.spacing.value_or((1.0 + gap) * widthOf(*character, placement, clips.value(), options.isYUp));
+        options.spacing.value_or((1.0 + gap) * medianWidth(*character, placement, clips.value(), options.isYUp));
     if (const Result<void> taken = crowd->setOrigin(placement.getTrans()); !taken) return taken.error();
     const Result<std::vector<OutfitShare>> outfits = addOutfits(*crowd, options);
     if (!outfits) return outfits.error();

@@ -20,7 +20,7 @@ struct CrowdOptions
     std::string modelFile;
     std::size_t columns = 1, rows = 1;
     std::vector<std::string> clips;  ///< names or numbers to choose from; empty: all
-    std::optional<double> spacing;   ///< distance between neighbours in units of the scene; none: by the clips' bounds
+    std::optional<double> spacing;   ///< distance between neighbours in units of the scene; none: by the median clip
     std::optional<float> pixelError; ///< see CharacterMeshes::setPixelError; none: the character's own
     std::uint32_t seed = 1;          ///< of the random clips and times
     std::string outfits;             ///< "random", or the name of an outfits file; empty: none

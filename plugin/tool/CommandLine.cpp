@@ -288,7 +288,7 @@ void CommandLine::addRender()
            "--view", [this](const std::string& text) { _render.view = readView(text); },
            "From where, in degrees: 0,0 is level, in front; azimuth 90 is the model's left side; elevation 90 is "
            "above; "
-           "default: about 29,15")
+           "default: about 29,15; crowds from higher")
         ->option_text("AZIMUTH,ELEVATION")
         ->excludes(camera);
     app.add_option("--time", _render.time, "Seconds; clips loop (default 0)")->check(checkFinite);

@@ -183,10 +183,11 @@ std::vector<double> RenderCommand::times() const
     return times;
 }
 
-Result<void> RenderCommand::show(PictureViewer& viewer, osg::Node& scene, const std::vector<osg::Vec3d>& points) const
+Result<void> RenderCommand::show(PictureViewer& viewer, osg::Node& scene, const std::vector<osg::Vec3d>& points,
+                                 const std::optional<ViewDirection>& from) const
 {
     if (points.empty()) return Error{file + ": there is nothing to draw; a file of clips needs a model, see --clips"};
-    viewer.show(&scene, turntable ? turned(points) : points, view);
+    viewer.show(&scene, turntable ? turned(points) : points, from);
     return {};
 }
 
@@ -209,7 +210,7 @@ Result<void> RenderCommand::drawPictures(PictureViewer& viewer,
 Result<void> RenderCommand::drawModel(PictureViewer& viewer, const gltf::ImportedModel& model) const
 {
     const std::vector<double> posed = turntable ? std::vector<double>{time} : times();
-    if (const Result<void> shown = show(viewer, *model.root, pointsOf(model, posed)); !shown) return shown;
+    if (const Result<void> shown = show(viewer, *model.root, pointsOf(model, posed), view); !shown) return shown;
     if (model.character) waitForLevels(model.character->getMeshes());
     if (model.startCamera) viewer.lookThrough(*model.startCamera);
     return drawPictures(viewer,
@@ -226,7 +227,9 @@ Result<void> RenderCommand::drawCrowd(PictureViewer& viewer, osg::Node& model, c
     if (!crowd) return Error{grid.modelFile + ": " + crowd.error().message};
     osg::ref_ptr<osg::Group> scene = new osg::Group;
     scene->addChild(crowd.value());
-    if (const Result<void> shown = show(viewer, *scene, osgGpuAnimation::pointsOf(*scene)); !shown) return shown;
+    const std::vector<osg::Vec3d> points = osgGpuAnimation::pointsOf(*scene);
+    if (const Result<void> shown = show(viewer, *scene, points, view.value_or(fillingDirection(points))); !shown)
+        return shown;
     waitForLevels(crowd.value()->getMeshes());
     viewer.draw(0.0); // the time from which the clips run
     return drawPictures(viewer, [](double seconds) { return seconds; });

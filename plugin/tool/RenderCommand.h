@@ -29,7 +29,7 @@ struct RenderCommand : ModelArguments ///< or a crowd of it: `fox.glb.20x20.crow
     double time = 0.0;                  ///< seconds; clips loop
     int width = 800;                    ///< pixels, [1, maxSize]
     int height = 600;
-    std::optional<ViewDirection> view; ///< none: raisedStandpoint(), or `camera`
+    std::optional<ViewDirection> view; ///< none: `camera`, or raisedStandpoint(); of a crowd, fillingDirection()
     std::optional<int> turntable;      ///< the number of numbered pictures around the model; none: one view
     std::optional<int> frames;         ///< the number of numbered pictures over time; none: one time
     double framesPerSecond = 30.0;
@@ -43,7 +43,8 @@ struct RenderCommand : ModelArguments ///< or a crowd of it: `fox.glb.20x20.crow
 private:
     std::vector<double> times() const; ///< seconds, by picture
     /// points: of the scene, at all times. Error: there are none.
-    Result<void> show(PictureViewer& viewer, osg::Node& scene, const std::vector<osg::Vec3d>& points) const;
+    Result<void> show(PictureViewer& viewer, osg::Node& scene, const std::vector<osg::Vec3d>& points,
+                      const std::optional<ViewDirection>& from) const;
     /// simulationTime: of the viewer, from a picture's time; called before the picture is drawn.
     Result<void> drawPictures(PictureViewer& viewer, const std::function<double(double)>& simulationTime) const;
     Result<void> drawModel(PictureViewer& viewer, const gltf::ImportedModel& model) const;

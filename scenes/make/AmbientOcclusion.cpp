@@ -45,12 +45,13 @@ double lightAt(const TriangleGrid& grid, const std::vector<glm::dvec3>& directio
 
 } // namespace
 
-void computeLight(std::vector<Part>& parts, double reach)
+void computeLight(std::vector<Part>& parts, const std::vector<Part>& others, double reach)
 {
     std::vector<TriangleGrid::Triangle> triangles;
-    for (const Part& part : parts)
-        for (const auto& [a, b, c] : part.triangles())
-            triangles.push_back({part.positions[a], part.positions[b], part.positions[c]});
+    for (const std::vector<Part>* each : {static_cast<const std::vector<Part>*>(&parts), &others})
+        for (const Part& part : *each)
+            for (const auto& [a, b, c] : part.triangles())
+                triangles.push_back({part.positions[a], part.positions[b], part.positions[c]});
     const TriangleGrid grid(triangles, reach / 8.0);
     const std::vector<glm::dvec3> directions = sphereDirections(160);
     for (Part& part : parts)

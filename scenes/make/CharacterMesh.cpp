@@ -3,14 +3,23 @@
 #include "AmbientOcclusion.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace osgGpuAnimation::scenes
 {
 
+void CharacterMesh::wear(const std::string& garment, const std::string& material)
+{
+    _garment = garment;
+    _material = material;
+}
+
 void CharacterMesh::add(Part part, int width, int height, const Painter& painter, const Painter& reflection)
 {
-    part.rect.width = width;
-    part.rect.height = height;
+    part.rect.width = static_cast<int>(std::lround(width * _scale));
+    part.rect.height = static_cast<int>(std::lround(height * _scale));
+    part.garment = _garment;
+    part.material = _material;
     part.painter = painter;
     part.reflection = reflection;
     _parts.push_back(std::move(part));
@@ -24,11 +33,29 @@ void CharacterMesh::addPair(const Part& part, int width, int height, const Paint
 
 void CharacterMesh::finish()
 {
-    const double reach = 0.30; // metres: as far as a limb is from the body
-    computeLight(_parts, reach);
+    light();
     allocateRects();
     for (const Part& part : _parts)
         if (part.painted) _atlas.paint(part);
+}
+
+void CharacterMesh::light()
+{
+    const double reach = 0.30; // metres: as far as a limb is from the body
+    std::vector<std::vector<Part>> garments;
+    for (Part& part : _parts)
+    {
+        const auto same = [&](const std::vector<Part>& garment) { return garment[0].garment == part.garment; };
+        auto found = std::find_if(garments.begin(), garments.end(), same);
+        if (found == garments.end()) found = garments.emplace(found);
+        found->push_back(std::move(part));
+    }
+    _parts.clear();
+    for (std::size_t garment = 0; garment < garments.size(); ++garment)
+    {
+        computeLight(garments[garment], garment > 0 ? garments[0] : std::vector<Part>(), reach);
+        _parts.insert(_parts.end(), garments[garment].begin(), garments[garment].end());
+    }
 }
 
 void CharacterMesh::allocateRects()
@@ -44,11 +71,21 @@ void CharacterMesh::allocateRects()
         if (!_parts[i].painted) _parts[i].rect = _parts[i - 1].rect; // a mirror image follows its original
 }
 
-PrimitiveArrays CharacterMesh::arrays() const
+std::vector<std::pair<std::string, std::string>> CharacterMesh::primitives() const
+{
+    std::vector<std::pair<std::string, std::string>> result;
+    for (const Part& part : _parts)
+        if (std::find(result.begin(), result.end(), std::pair(part.garment, part.material)) == result.end())
+            result.emplace_back(part.garment, part.material);
+    return result;
+}
+
+PrimitiveArrays CharacterMesh::arrays(const std::string& garment, const std::string& material) const
 {
     PrimitiveArrays arrays;
     for (const Part& part : _parts)
     {
+        if (part.garment != garment || part.material != material) continue;
         appendPart(arrays, part);
         appendBindings(arrays, part);
     }

@@ -14,6 +14,8 @@ namespace osgGpuAnimation::scenes
 namespace
 {
 
+const char* const variantsExtension = "KHR_materials_variants";
+
 double rounded(double value)
 {
     const double steps = 1048576.0;
@@ -90,6 +92,30 @@ int GltfDocument::addMaterial(const tinygltf::Material& material)
             _model.extensionsUsed.push_back(name);
     _model.materials.push_back(material);
     return static_cast<int>(_model.materials.size()) - 1;
+}
+
+int GltfDocument::addVariant(const std::string& name)
+{
+    tinygltf::Value::Array variants;
+    const auto found = _model.extensions.find(variantsExtension);
+    if (found == _model.extensions.end())
+        _model.extensionsUsed.push_back(variantsExtension);
+    else
+        variants = found->second.Get("variants").Get<tinygltf::Value::Array>();
+    variants.emplace_back(tinygltf::Value::Object{{"name", tinygltf::Value(name)}});
+    const int index = static_cast<int>(variants.size()) - 1;
+    _model.extensions[variantsExtension] =
+        tinygltf::Value(tinygltf::Value::Object{{"variants", tinygltf::Value(std::move(variants))}});
+    return index;
+}
+
+void GltfDocument::setVariantMaterial(int mesh, int variant, int material)
+{
+    tinygltf::Value::Array variants{tinygltf::Value(variant)};
+    tinygltf::Value::Array mappings{tinygltf::Value(tinygltf::Value::Object{
+        {"material", tinygltf::Value(material)}, {"variants", tinygltf::Value(std::move(variants))}})};
+    _model.meshes[mesh].primitives.back().extensions[variantsExtension] =
+        tinygltf::Value(tinygltf::Value::Object{{"mappings", tinygltf::Value(std::move(mappings))}});
 }
 
 int GltfDocument::addMesh(const std::string& name)

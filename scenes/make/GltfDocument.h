@@ -47,6 +47,11 @@ public:
     /// Records the material's extensions as used by the file.
     int addMaterial(const tinygltf::Material& material);
 
+    /// A variant of KHR_materials_variants.
+    int addVariant(const std::string& name);
+    /// The material of the mesh's last primitive in a variant.
+    void setVariantMaterial(int mesh, int variant, int material);
+
     int addMesh(const std::string& name);
     void addPrimitive(int mesh, const PrimitiveArrays& arrays, int material);
     /// A mesh with the vertices of another one's first primitive, and a material of its own.

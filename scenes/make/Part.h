@@ -39,7 +39,9 @@ struct Part
     std::vector<double> along; ///< v of each row
     std::vector<double> light; ///< how much of the surroundings a vertex sees, [0, 1]
     bool clockwise = false;    ///< the grid's triangles have to be turned over to face outwards
-    bool painted = true;       ///< false: shares the texture of the part that it mirrors
+    std::string garment;       ///< the node that shows it (see CharacterMesh)
+    std::string material;
+    bool painted = true; ///< false: shares the texture of the part that it mirrors
     AtlasRect rect;
     Painter painter;
     Painter reflection; ///< gives (1, roughness, metallic), linear: the channels of glTF's metallic-roughness map

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "MaterialBalls.h"
+#include "people/People.h"
 #include "serpent/Serpent.h"
 #include "wanderer/Wanderer.h"
 
@@ -14,13 +15,14 @@ int main(int argc, char** argv)
     {
         const bool asked = argument == "--help" || argument == "-h";
         (asked ? std::cout : std::cerr) << "usage: make_scenes FOLDER\n"
-                                           "Writes the project's own scenes, Wanderer.glb, Serpent.glb and "
-                                           "MaterialBalls.glb, into an existing folder.\n";
+                                           "Writes the project's own scenes, Wanderer.glb, People.glb, Serpent.glb "
+                                           "and MaterialBalls.glb, into an existing folder.\n";
         return asked ? 0 : 2;
     }
     try
     {
         osgGpuAnimation::scenes::writeWanderer(argument + "/Wanderer.glb");
+        osgGpuAnimation::scenes::writePeople(argument + "/People.glb");
         osgGpuAnimation::scenes::writeSerpent(argument + "/Serpent.glb");
         osgGpuAnimation::scenes::writeMaterialBalls(argument + "/MaterialBalls.glb");
         return 0;

@@ -31,6 +31,29 @@ TEST(StandpointTest, pointsFillPicturesOfEveryShape)
     }
 }
 
+// A crowd would fill a strip of the picture.
+TEST(StandpointTest, whatLiesFlatIsSeenFromHigher)
+{
+    const struct
+    {
+        const char* name;
+        osg::Vec3d size;
+        double elevation; ///< degrees
+    } cases[] = {
+        {"a crowd", {20, 20, 1.7}, 34.7},
+        {"a person", {1.0, 0.6, 1.7}, 14.7},
+        {"a wall", {8, 0.5, 1}, 14.7},
+        {"a point", {0, 0, 0}, 14.7},
+    };
+    for (const auto& [name, size, elevation] : cases)
+    {
+        std::vector<osg::Vec3d> points;
+        for (unsigned int corner = 0; corner < 8; ++corner)
+            points.emplace_back(corner & 1 ? size.x() : 0, corner & 2 ? size.y() : 0, corner & 4 ? size.z() : 0);
+        EXPECT_NEAR(fillingDirection(points).elevation, elevation, 0.1) << name;
+    }
+}
+
 TEST(StandpointTest, directionsAreAroundAndAboveTheFront)
 {
     const double half = std::sqrt(0.5);

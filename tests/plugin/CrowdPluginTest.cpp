@@ -5,13 +5,18 @@
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
+#include <osgGpuAnimation/nodes/studio/ModelExtent.h>
 #include <osgGpuAnimation/nodes/studio/Studio.h>
 
 #include <osg/MatrixTransform>
 #include <osgDB/FileNameUtils>
 #include <osgDB/ReadFile>
 #include <osgDB/WriteFile>
+#include <osgGA/EventVisitor>
+#include <osgGA/TrackballManipulator>
+#include <osgViewer/Viewer>
 
+#include <algorithm>
 #include <set>
 
 namespace osgGpuAnimation::gltf
@@ -105,6 +110,9 @@ TEST_F(CrowdPluginTest, theSpacingIsOfTheLargerHorizontalSide)
     ModelBuilder mast; // slides by 1: 1.5 wide, 8 high, 3 deep in the file's axes
     mast.node("mast", -1, mast.mesh({{"POSITION", mast.floats(TINYGLTF_TYPE_VEC3, {0, 0, 0, 0.5f, 8, 0, 0, 0, 3})}}));
     mast.slidingClip("slide", 0);
+    mast.slidingClip("slide again", 0);
+    mast.animation("leap"); // one wide clip does not spread the crowd
+    mast.channel(0, "translation", {0, 1}, TINYGLTF_TYPE_VEC3, {0, 0, 0, 0, 0, 30});
     folder.write("mast.gltf", mast.text());
     for (const char* options : {"", "noRotation"})
     {
@@ -283,6 +291,58 @@ TEST_F(StudioPluginTest, aFileWithoutMeshesIsReadWithAWarning)
     Read result = read("empty.gltf.studio");
     EXPECT_TRUE(dynamic_cast<const Studio*>(result.getNode())) << result.message();
     EXPECT_NE(log->text.find("nothing to see"), std::string::npos) << log->text;
+}
+
+/// A viewer that takes events and draws nothing.
+class FirstView : public osgViewer::Viewer
+{
+public:
+    FirstView(osg::Group& scene, double aspect)
+    {
+        getCamera()->setProjectionMatrixAsPerspective(30.0, aspect, 1.0, 10000.0);
+        setCameraManipulator(new osgGA::TrackballManipulator);
+        const osg::ref_ptr<osgGA::EventVisitor> visitor = new osgGA::EventVisitor;
+        const osg::ref_ptr<osgGA::GUIEventAdapter> frame = new osgGA::GUIEventAdapter;
+        frame->setEventType(osgGA::GUIEventAdapter::FRAME);
+        visitor->addEvent(frame);
+        visitor->setActionAdapter(this);
+        scene.accept(*visitor);
+        getCamera()->setViewMatrix(getCameraManipulator()->getInverseMatrix());
+        const osg::Matrixd toPicture = getCamera()->getViewMatrix() * getCamera()->getProjectionMatrix();
+        for (const osg::Vec3d& point : pointsOf(scene))
+            shown.expandBy(point * toPicture);
+    }
+
+    osg::BoundingBoxd shown; ///< what the scene fills of the window, which reaches from -1 to 1
+};
+
+TEST_F(StudioPluginTest, theFirstViewIsFilled)
+{
+    const std::string scenes = OSGGPUANIMATION_SCENES;
+    const struct
+    {
+        std::string file;
+        double least; ///< share of the window's limiting side
+        double other; ///< of the other one
+    } cases[] = {
+        {scenes + "/Wanderer.glb", 0.7, 0.15},
+        {scenes + "/Wanderer.glb.5x5.crowd", 0.7, 0.5},
+        {scenes + "/Wanderer.glb.40x40.crowd", 0.7, 0.5},
+        {folder.file("still.gltf"), 0.7, 0.4},
+    };
+    for (const auto& [file, least, other] : cases)
+        for (const double aspect : {1.0, 4.0 / 3.0, 16.0 / 9.0})
+        {
+            SCOPED_TRACE(testing::Message() << file << ' ' << aspect);
+            const osg::ref_ptr<osg::Node> studio = osgDB::readRefNodeFile(file + ".studio");
+            ASSERT_TRUE(studio);
+            const osg::BoundingBoxd shown = FirstView(*studio->asGroup(), aspect).shown;
+            const double width = 0.5 * (shown.xMax() - shown.xMin()), height = 0.5 * (shown.yMax() - shown.yMin());
+            EXPECT_GT(std::max(width, height), least);
+            EXPECT_GT(std::min(width, height), other);
+            EXPECT_LT(std::max({-shown.xMin(), shown.xMax(), -shown.yMin(), shown.yMax()}), 1.0)
+                << "nothing is cut off";
+        }
 }
 
 TEST_F(StudioPluginTest, isKeptInOsgsFormats)

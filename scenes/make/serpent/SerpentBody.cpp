@@ -203,7 +203,7 @@ SerpentArrays serpentArrays(const Rig& rig)
     parts.push_back(mirrored(parts[4], rig));
     parts.push_back(mirrored(parts[5], rig));
     const double reach = 0.15; // metres
-    computeLight(parts, reach);
+    computeLight(parts, {}, reach);
     SerpentArrays result;
     for (const Part& part : parts)
     {

@@ -13,35 +13,39 @@
 namespace osgGpuAnimation::scenes
 {
 
-namespace
-{
-
-LoftRing coatRing(double height, double side, double front, double back)
+LoftRing wandererCoatRing(double height, double side, double front, double back)
 {
     LoftRing ring = levelRing({0.0, height, -0.008}, side, front, back);
     ring.roundness = 0.88 + 0.12 * glm::smoothstep(0.75, 0.90, height); // room for the thighs
     return ring;
 }
 
+namespace
+{
+
 /// From the neck to the hem.
 const std::vector<LoftRing> coatRings = {
-    coatRing(1.225, 0.070, 0.070, 0.070), coatRing(1.190, 0.112, 0.090, 0.092), coatRing(1.150, 0.152, 0.108, 0.108),
-    coatRing(1.100, 0.168, 0.126, 0.120), coatRing(1.020, 0.166, 0.136, 0.124), coatRing(0.940, 0.160, 0.135, 0.120),
-    coatRing(0.880, 0.157, 0.131, 0.118), coatRing(0.830, 0.165, 0.138, 0.128), coatRing(0.760, 0.186, 0.156, 0.150),
-    coatRing(0.690, 0.208, 0.174, 0.172), coatRing(0.625, 0.226, 0.190, 0.190)};
+    wandererCoatRing(1.225, 0.070, 0.070, 0.070), wandererCoatRing(1.190, 0.112, 0.090, 0.092),
+    wandererCoatRing(1.150, 0.152, 0.108, 0.108), wandererCoatRing(1.100, 0.168, 0.126, 0.120),
+    wandererCoatRing(1.020, 0.166, 0.136, 0.124), wandererCoatRing(0.940, 0.160, 0.135, 0.120),
+    wandererCoatRing(0.880, 0.157, 0.131, 0.118), wandererCoatRing(0.830, 0.165, 0.138, 0.128),
+    wandererCoatRing(0.760, 0.186, 0.156, 0.150), wandererCoatRing(0.690, 0.208, 0.174, 0.172),
+    wandererCoatRing(0.625, 0.226, 0.190, 0.190)};
 
 void addCoat(CharacterMesh& mesh)
 {
     std::vector<LoftRing> rings = refined(coatRings, 2);
-    rings.push_back(coatRing(0.612, 0.226, 0.190, 0.190)); // the hem's edge, then up again inside
-    rings.push_back(coatRing(0.612, 0.214, 0.178, 0.178));
-    rings.push_back(coatRing(0.640, 0.205, 0.170, 0.170));
-    rings.push_back(coatRing(0.720, 0.172, 0.142, 0.138));
-    rings.push_back(coatRing(0.755, 0.000, 0.000, 0.000));
+    rings.push_back(wandererCoatRing(0.612, 0.226, 0.190, 0.190)); // the hem's edge, then up again inside
+    rings.push_back(wandererCoatRing(0.612, 0.214, 0.178, 0.178));
+    rings.push_back(wandererCoatRing(0.640, 0.205, 0.170, 0.170));
+    rings.push_back(wandererCoatRing(0.720, 0.172, 0.142, 0.138));
+    rings.push_back(wandererCoatRing(0.755, 0.000, 0.000, 0.000));
     mesh.add(loft(rings, 26, coatBinder(mesh.rig())), 432, 312, wandererPaint::coat, wandererPaint::wool);
 }
 
-void addSleeves(CharacterMesh& mesh)
+} // namespace
+
+void addWandererSleeves(CharacterMesh& mesh, const Painter& painter)
 {
     const Rig& rig = mesh.rig();
     const glm::dvec3 shoulder = rig.head("UpperArm_L");
@@ -70,10 +74,10 @@ void addSleeves(CharacterMesh& mesh)
     const LoftRing inside = lower(1.02, 0.066, 0.067);
     for (const LoftRing& ring : {edge, cuff, cuff, end, end, inside, lower(0.90, 0.050, 0.050), lower(0.88, 0.0, 0.0)})
         rings.push_back(ring);
-    mesh.addPair(loft(rings, 13, armBinder(rig)), 200, 280, wandererPaint::sleeve, wandererPaint::wool);
+    mesh.addPair(loft(rings, 13, armBinder(rig)), 200, 280, painter, wandererPaint::wool);
 }
 
-void addGloves(CharacterMesh& mesh)
+void addWandererGloves(CharacterMesh& mesh, const Painter& painter)
 {
     const Rig& rig = mesh.rig();
     const glm::dvec3 wrist = rig.head("Hand_L");
@@ -84,7 +88,7 @@ void addGloves(CharacterMesh& mesh)
     const std::vector<LoftRing> hand = {at(-0.035, 0.034, 0.040), at(0.000, 0.035, 0.043), at(0.030, 0.038, 0.054),
                                         at(0.065, 0.039, 0.062),  at(0.095, 0.037, 0.061), at(0.125, 0.034, 0.057),
                                         at(0.155, 0.030, 0.047),  at(0.178, 0.021, 0.030), at(0.188, 0.000, 0.000)};
-    mesh.addPair(loft(refined(hand, 2), 12, gloveBinder(rig)), 132, 132, wandererPaint::glove, wandererPaint::waxed);
+    mesh.addPair(loft(refined(hand, 2), 12, gloveBinder(rig)), 132, 132, painter, wandererPaint::waxed);
 
     const glm::dvec3 root = rig.head("Thumb_L");
     const glm::dvec3 tip = glm::normalize(glm::dvec3(0.028, -0.030, 0.050));
@@ -100,10 +104,10 @@ void addGloves(CharacterMesh& mesh)
         const double out = glm::dot(position - root, tip) / 0.03;
         return Binding(handJoint).give(std::min(std::max(out, 0.0), 1.0), thumbJoint);
     };
-    mesh.addPair(loft(thumb, 8, binder), 60, 60, wandererPaint::glove, wandererPaint::waxed);
+    mesh.addPair(loft(thumb, 8, binder), 60, 60, painter, wandererPaint::waxed);
 }
 
-void addTrousers(CharacterMesh& mesh)
+void addWandererTrousers(CharacterMesh& mesh, const Painter& painter)
 {
     const auto at = [](double height, double x, double z, double side, double front, double back) {
         return levelRing({x, height, z}, side, front, back);
@@ -114,9 +118,11 @@ void addTrousers(CharacterMesh& mesh)
         at(0.490, 0.100, 0.010, 0.078, 0.080, 0.079),  at(0.400, 0.102, 0.013, 0.077, 0.080, 0.076),
         at(0.320, 0.103, 0.006, 0.076, 0.078, 0.078),  at(0.270, 0.104, 0.000, 0.072, 0.074, 0.076),
         at(0.220, 0.104, -0.004, 0.060, 0.060, 0.060), at(0.215, 0.104, -0.004, 0.0, 0.0, 0.0)};
-    mesh.addPair(loft(refined(rings, 2), 13, legBinder(mesh.rig())), 170, 210, wandererPaint::trousers,
-                 wandererPaint::wool);
+    mesh.addPair(loft(refined(rings, 2), 13, legBinder(mesh.rig())), 170, 210, painter, wandererPaint::wool);
 }
+
+namespace
+{
 
 /// A ring of the boot between ankle and toe: `tilt` degrees from level to upright, from instep down to the sole.
 LoftRing footRing(double y, double z, double tilt, double side, double instep, double under)
@@ -131,7 +137,9 @@ LoftRing footRing(double y, double z, double tilt, double side, double instep, d
     return ring;
 }
 
-void addBoots(CharacterMesh& mesh)
+} // namespace
+
+void addWandererBoots(CharacterMesh& mesh, const Painter& boot, const Painter& sole)
 {
     const auto shaft = [](double height, double z, double side, double front, double back) {
         return levelRing({0.104, height, z}, side, front, back);
@@ -152,7 +160,7 @@ void addBoots(CharacterMesh& mesh)
     for (const LoftRing& ring : refined(foot, 1))
         rings.push_back(ring);
     rings.back().front = glm::dvec3(0.0);
-    mesh.addPair(loft(rings, 14, legBinder(mesh.rig())), 240, 246, wandererPaint::boot, wandererPaint::waxed);
+    mesh.addPair(loft(rings, 14, legBinder(mesh.rig())), 240, 246, boot, wandererPaint::waxed);
 
     const auto slab = [](double height, double grow, double side)
     {
@@ -160,18 +168,21 @@ void addBoots(CharacterMesh& mesh)
         ring.roundness = 0.90;
         return ring;
     };
-    const std::vector<LoftRing> sole = {levelRing({0.110, 0.0, 0.065}, 0.0, 0.0, 0.0),
-                                        slab(0.000, -0.006, 0.080),
-                                        slab(0.000, -0.006, 0.080),
-                                        slab(0.008, 0.000, 0.082),
-                                        slab(0.026, 0.000, 0.084),
-                                        slab(0.026, 0.000, 0.084),
-                                        slab(0.034, -0.012, 0.080),
-                                        levelRing({0.110, 0.040, 0.065}, 0.0, 0.0, 0.0)};
-    mesh.addPair(loft(sole, 16, legBinder(mesh.rig())), 180, 60, wandererPaint::sole, wandererPaint::waxed);
+    const std::vector<LoftRing> slabs = {levelRing({0.110, 0.0, 0.065}, 0.0, 0.0, 0.0),
+                                         slab(0.000, -0.006, 0.080),
+                                         slab(0.000, -0.006, 0.080),
+                                         slab(0.008, 0.000, 0.082),
+                                         slab(0.026, 0.000, 0.084),
+                                         slab(0.026, 0.000, 0.084),
+                                         slab(0.034, -0.012, 0.080),
+                                         levelRing({0.110, 0.040, 0.065}, 0.0, 0.0, 0.0)};
+    mesh.addPair(loft(slabs, 16, legBinder(mesh.rig())), 180, 60, sole, wandererPaint::waxed);
 }
 
-} // namespace
+const std::vector<LoftRing>& wandererCoatRings()
+{
+    return coatRings;
+}
 
 LoftRing wandererCoatAt(double height)
 {
@@ -184,10 +195,10 @@ LoftRing wandererCoatAt(double height)
 void addWandererBody(CharacterMesh& mesh)
 {
     addCoat(mesh);
-    addBoots(mesh);
-    addSleeves(mesh);
-    addTrousers(mesh);
-    addGloves(mesh);
+    addWandererBoots(mesh, wandererPaint::boot, wandererPaint::sole);
+    addWandererSleeves(mesh, wandererPaint::sleeve);
+    addWandererTrousers(mesh, wandererPaint::trousers);
+    addWandererGloves(mesh, wandererPaint::glove);
 }
 
 } // namespace osgGpuAnimation::scenes

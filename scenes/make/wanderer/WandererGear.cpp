@@ -18,7 +18,7 @@ namespace
 {
 
 /// Wound around the neck: a closed loop of rings around the Y axis, in two turns of different thickness.
-void addScarf(CharacterMesh& mesh)
+void addWound(CharacterMesh& mesh, const Painter& painter)
 {
     std::vector<LoftRing> rings;
     const int steps = 24;
@@ -39,10 +39,10 @@ void addScarf(CharacterMesh& mesh)
     const int neck = mesh.rig().index("Neck");
     const auto binder = [=](const glm::dvec3& position, const LoftRing&)
     { return Binding(chest).give(glm::smoothstep(1.17, 1.27, position.y) * 0.6, neck); };
-    mesh.add(loft(rings, 10, binder), 108, 296, wandererPaint::scarf, wandererPaint::wool);
+    mesh.add(loft(rings, 10, binder), 108, 296, painter, wandererPaint::wool);
 }
 
-void addScarfTail(CharacterMesh& mesh)
+void addScarfTail(CharacterMesh& mesh, const Painter& painter)
 {
     const Rig& rig = mesh.rig();
     const glm::dvec3 sideward = glm::normalize(glm::dvec3(1.0, 0.0, -0.12));
@@ -63,21 +63,28 @@ void addScarfTail(CharacterMesh& mesh)
         .then(rig.index("Scarf2"), rig.head("Scarf2"), {0.0, -1.0, -0.2}, 0.07)
         .then(rig.index("Scarf3"), rig.head("Scarf3"), {0.0, -1.0, -0.2}, 0.07);
     const auto binder = [=](const glm::dvec3&, const LoftRing& ring) { return tail.at(ring.center); };
-    mesh.add(loft(refined(rings, 2), 8, binder), 128, 220, wandererPaint::scarfTail, wandererPaint::wool);
+    mesh.add(loft(refined(rings, 2), 8, binder), 128, 220, painter, wandererPaint::wool);
 }
 
-void addBelt(CharacterMesh& mesh)
+/// The coat's outline at a height, `off` metres farther out.
+LoftRing band(double height, double off)
 {
-    const auto band = [](double height, double off)
-    {
-        LoftRing ring = wandererCoatAt(height);
-        const double front = glm::length(ring.front);
-        return levelRing({0.0, height, ring.center.z}, ring.side.x + off, front + off, front * ring.back + off);
-    };
+    const LoftRing ring = wandererCoatAt(height);
+    const double front = glm::length(ring.front);
+    return levelRing({0.0, height, ring.center.z}, ring.side.x + off, front + off, front * ring.back + off);
+}
+
+} // namespace
+
+void addWandererBelt(CharacterMesh& mesh)
+{
     const std::vector<LoftRing> belt = {band(0.884, -0.01), band(0.884, 0.008), band(0.884, 0.008), band(0.868, 0.011),
                                         band(0.850, 0.009), band(0.850, 0.009), band(0.850, -0.01)};
     mesh.add(loft(belt, 26, coatBinder(mesh.rig())), 240, 28, wandererPaint::leather, wandererPaint::waxed);
+}
 
+void addWandererBuckle(CharacterMesh& mesh)
+{
     const double front = band(0.867, 0.012).front.z - 0.008;
     const auto plate = [&](double z, double half)
     {
@@ -93,7 +100,7 @@ void addBelt(CharacterMesh& mesh)
     mesh.add(loft(buckle, 12, coatBinder(mesh.rig())), 60, 40, wandererPaint::brass, wandererPaint::polished);
 }
 
-void addButtons(CharacterMesh& mesh)
+void addWandererButtons(CharacterMesh& mesh)
 {
     for (double height : {1.115, 1.035, 0.955})
     {
@@ -103,6 +110,9 @@ void addButtons(CharacterMesh& mesh)
         mesh.add(loft(disc, 8, coatBinder(mesh.rig())), 28, 28, wandererPaint::brass, wandererPaint::polished);
     }
 }
+
+namespace
+{
 
 /// The strap's middle: from under the scarf on the left, over the chest, to the satchel on the right hip, and back.
 glm::dvec3 strapAt(double angle)
@@ -157,14 +167,27 @@ void addSatchel(CharacterMesh& mesh)
 
 } // namespace
 
+void addWandererScarf(CharacterMesh& mesh, const Painter& scarf, const Painter& tail)
+{
+    addWound(mesh, scarf);
+    addScarfTail(mesh, tail);
+}
+
+void addWandererBag(CharacterMesh& mesh)
+{
+    addStrap(mesh);
+    addSatchel(mesh);
+}
+
 void addWandererGear(CharacterMesh& mesh)
 {
-    addScarf(mesh);
+    addWound(mesh, wandererPaint::scarf);
     addStrap(mesh);
-    addScarfTail(mesh);
+    addScarfTail(mesh, wandererPaint::scarfTail);
     addSatchel(mesh);
-    addBelt(mesh);
-    addButtons(mesh);
+    addWandererBelt(mesh);
+    addWandererBuckle(mesh);
+    addWandererButtons(mesh);
 }
 
 } // namespace osgGpuAnimation::scenes

@@ -13,27 +13,30 @@
 namespace osgGpuAnimation::scenes
 {
 
+const glm::dvec3 wandererFaceCenter(0.0, 1.435, 0.015);
+const glm::dvec3 wandererFaceHalf(0.196, 0.182, 0.178);
+
 namespace
 {
-
-const glm::dvec3 faceCenter(0.0, 1.435, 0.015);
-const glm::dvec3 faceHalf(0.196, 0.182, 0.178);
 
 /// A place on the face, by its height and sideward distance from the centre.
 glm::dvec3 onFace(double x, double y)
 {
-    const double flat = (x * x) / (faceHalf.x * faceHalf.x) + (y * y) / (faceHalf.y * faceHalf.y);
-    return faceCenter + glm::dvec3(x, y, faceHalf.z * std::sqrt(std::max(0.0, 1.0 - flat)));
+    const double flat =
+        (x * x) / (wandererFaceHalf.x * wandererFaceHalf.x) + (y * y) / (wandererFaceHalf.y * wandererFaceHalf.y);
+    return wandererFaceCenter + glm::dvec3(x, y, wandererFaceHalf.z * std::sqrt(std::max(0.0, 1.0 - flat)));
 }
 
-void addFace(CharacterMesh& mesh)
+} // namespace
+
+void addWandererFace(CharacterMesh& mesh)
 {
-    std::vector<LoftRing> rings =
-        ellipsoid(faceCenter, {0.0, faceHalf.y, 0.0}, {faceHalf.x, 0.0, 0.0}, {0.0, 0.0, faceHalf.z}, 15);
+    std::vector<LoftRing> rings = ellipsoid(wandererFaceCenter, {0.0, wandererFaceHalf.y, 0.0},
+                                            {wandererFaceHalf.x, 0.0, 0.0}, {0.0, 0.0, wandererFaceHalf.z}, 15);
     for (LoftRing& ring : rings)
     {
         // Full cheeks: the lower half is wider than an ellipsoid's.
-        const double height = (ring.center.y - faceCenter.y) / faceHalf.y;
+        const double height = (ring.center.y - wandererFaceCenter.y) / wandererFaceHalf.y;
         ring.side *= 1.0 + 0.08 * std::max(0.0, 1.0 - std::abs(height + 0.45) / 0.55);
     }
     mesh.add(loft(rings, 22, rigidBinder(mesh.rig().index("Head"))), 448, 296, wandererPaint::face,
@@ -44,10 +47,10 @@ void addFace(CharacterMesh& mesh)
     mesh.add(loft(nub, 8, rigidBinder(mesh.rig().index("Head"))), 40, 40, wandererPaint::face, wandererPaint::skinned);
 }
 
-void addEyes(CharacterMesh& mesh)
+void addWandererEyes(CharacterMesh& mesh)
 {
     const glm::dvec3 place = onFace(0.078, -0.012);
-    const glm::dvec3 outward = glm::normalize((place - faceCenter) / (faceHalf * faceHalf));
+    const glm::dvec3 outward = glm::normalize((place - wandererFaceCenter) / (wandererFaceHalf * wandererFaceHalf));
     const glm::dvec3 side = glm::normalize(glm::cross({0.0, 1.0, 0.0}, outward));
     const glm::dvec3 up = glm::cross(outward, side);
     const std::vector<LoftRing> ball = ellipsoid(place - outward * 0.004, outward * 0.013, side * 0.029, up * 0.042, 7);
@@ -67,8 +70,12 @@ void addEyes(CharacterMesh& mesh)
     }
 }
 
+namespace
+{
+
 /// A strand of hair: from the hood's rim down over the forehead.
-void addStrand(CharacterMesh& mesh, const glm::dvec3& root, const glm::dvec3& bend, const glm::dvec3& tip, double width)
+void addStrand(CharacterMesh& mesh, const Painter& painter, const glm::dvec3& root, const glm::dvec3& bend,
+               const glm::dvec3& tip, double width)
 {
     std::vector<LoftRing> rings;
     for (int step = 0; step <= 6; ++step)
@@ -78,19 +85,24 @@ void addStrand(CharacterMesh& mesh, const glm::dvec3& root, const glm::dvec3& be
         const glm::dvec3 along = (bend - root) * (1.0 - t) + (tip - bend) * t;
         const bool end = step == 0 || step == 6;
         const double swell = end ? 0.0 : std::pow(1.0 - t, 0.55) * (1.0 + 0.9 * t);
-        rings.push_back(ringAcross(center, along, center - faceCenter, width * swell, 0.018 * swell));
+        rings.push_back(ringAcross(center, along, center - wandererFaceCenter, width * swell, 0.018 * swell));
     }
-    mesh.add(loft(rings, 7, rigidBinder(mesh.rig().index("Head"))), 44, 60, wandererPaint::hair, wandererPaint::combed);
+    mesh.add(loft(rings, 7, rigidBinder(mesh.rig().index("Head"))), 44, 60, painter, wandererPaint::combed);
 }
 
-void addFringe(CharacterMesh& mesh)
+} // namespace
+
+void addWandererFringe(CharacterMesh& mesh, const Painter& painter)
 {
     const auto out = [](double x, double y, double off) { return onFace(x, y) + glm::dvec3(0.0, 0.0, off); };
-    addStrand(mesh, out(0.035, 0.175, 0.01), out(0.00, 0.135, 0.035), out(-0.064, 0.064, 0.012), 0.044);
-    addStrand(mesh, out(0.045, 0.172, 0.01), out(0.06, 0.130, 0.030), out(0.046, 0.068, 0.012), 0.038);
-    addStrand(mesh, out(0.080, 0.160, 0.00), out(0.12, 0.110, 0.030), out(0.140, 0.048, 0.016), 0.036);
-    addStrand(mesh, out(-0.045, 0.172, 0.00), out(-0.10, 0.130, 0.030), out(-0.146, 0.052, 0.016), 0.038);
+    addStrand(mesh, painter, out(0.035, 0.175, 0.01), out(0.00, 0.135, 0.035), out(-0.064, 0.064, 0.012), 0.044);
+    addStrand(mesh, painter, out(0.045, 0.172, 0.01), out(0.06, 0.130, 0.030), out(0.046, 0.068, 0.012), 0.038);
+    addStrand(mesh, painter, out(0.080, 0.160, 0.00), out(0.12, 0.110, 0.030), out(0.140, 0.048, 0.016), 0.036);
+    addStrand(mesh, painter, out(-0.045, 0.172, 0.00), out(-0.10, 0.130, 0.030), out(-0.146, 0.052, 0.016), 0.038);
 }
+
+namespace
+{
 
 /// A ring of the hood: an upright ellipse whose plane leans back by `lean` degrees.
 LoftRing hoodRing(double y, double z, double side, double up, double down, double lean)
@@ -112,7 +124,9 @@ Binder hoodBinder(const Rig& rig)
     return [=](const glm::dvec3&, const LoftRing& ring) { return hood.at(ring.center); };
 }
 
-void addHood(CharacterMesh& mesh)
+} // namespace
+
+void addWandererHood(CharacterMesh& mesh, const Painter& hood, const Painter& pompom)
 {
     const std::vector<LoftRing> rim = {
         hoodRing(1.435, 0.000, 0.000, 0.000, 0.000, 0.0), hoodRing(1.435, 0.020, 0.198, 0.186, 0.186, 0.0),
@@ -131,24 +145,21 @@ void addHood(CharacterMesh& mesh)
     const std::vector<LoftRing> shell = refined(dome, 2);
     rings.insert(rings.end(), shell.begin() + 1, shell.end());
     rings.insert(rings.end(), tip.begin(), tip.end());
-    mesh.add(loft(rings, 24, hoodBinder(mesh.rig())), 432, 296, wandererPaint::hood, wandererPaint::wool);
+    mesh.add(loft(rings, 24, hoodBinder(mesh.rig())), 432, 296, hood, wandererPaint::wool);
 
-    std::vector<LoftRing> pompom =
+    std::vector<LoftRing> ball =
         ellipsoid({0.0, 1.432, -0.446}, {0.0, 0.040, 0.014}, {0.044, 0.0, 0.0}, {0.0, -0.014, 0.042}, 9);
-    for (std::size_t ring = 1; ring + 1 < pompom.size(); ++ring)
-        pompom[ring].side *= ring % 2 ? 1.06 : 0.95;
-    mesh.add(loft(pompom, 12, rigidBinder(mesh.rig().index("HoodTip2"))), 70, 50, wandererPaint::fleece,
-             wandererPaint::wool);
+    for (std::size_t ring = 1; ring + 1 < ball.size(); ++ring)
+        ball[ring].side *= ring % 2 ? 1.06 : 0.95;
+    mesh.add(loft(ball, 12, rigidBinder(mesh.rig().index("HoodTip2"))), 70, 50, pompom, wandererPaint::wool);
 }
-
-} // namespace
 
 void addWandererHead(CharacterMesh& mesh)
 {
-    addFace(mesh);
-    addHood(mesh);
-    addEyes(mesh);
-    addFringe(mesh);
+    addWandererFace(mesh);
+    addWandererHood(mesh, wandererPaint::hood, wandererPaint::fleece);
+    addWandererEyes(mesh);
+    addWandererFringe(mesh, wandererPaint::hair);
 }
 
 } // namespace osgGpuAnimation::scenes

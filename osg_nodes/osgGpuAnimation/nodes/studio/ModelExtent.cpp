@@ -3,14 +3,18 @@
 
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
+#include <osgGpuAnimation/mesh/geometry/PosedMesh.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
+#include <osgGpuAnimation/scene/OsgMatrix.h>
 #include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
 #include <osg/ComputeBoundsVisitor>
 #include <osg/Geometry>
 
+#include <algorithm>
+#include <cmath>
 #include <set>
 
 namespace osgGpuAnimation
@@ -21,6 +25,8 @@ namespace
 
 /// Of a mesh that does not move; a larger one counts by the corners of its box.
 constexpr std::size_t maxVertexCount = 100000;
+/// Of each outer instance of a crowd, whose extent depends little on them.
+constexpr int maxCrowdPoseCount = 3;
 
 /// The outermost instances in eight horizontal directions.
 std::set<std::size_t> outerInstances(const AnimatedCrowd& crowd)
@@ -47,16 +53,20 @@ class PointCollector : public SceneVisitor
 {
 public:
     using SceneVisitor::apply;
-    PointCollector() : SceneVisitor(Shared::EachPath, TRAVERSE_ACTIVE_CHILDREN) {}
+    /// poseCount: of each character, spread evenly over its clip from the present time on; crowds have fewer.
+    explicit PointCollector(int poseCount)
+        : SceneVisitor(Shared::EachPath, TRAVERSE_ACTIVE_CHILDREN), _poseCount(poseCount)
+    {
+    }
 
     void apply(osg::Transform& transform) override
     {
         if (auto* character = dynamic_cast<AnimatedCharacter*>(&transform))
-            forEachMesh(*character, [&](const SkinnedGeometry& mesh) { add(*character->getPosedMesh(mesh)); });
+            addPoses(*character, character->getController(), toAffine(character->getFileToNode()), _poseCount);
         else if (auto* crowd = dynamic_cast<AnimatedCrowd*>(&transform))
             for (const std::size_t index : outerInstances(*crowd))
-                forEachMesh(*crowd, [&](const SkinnedGeometry& mesh)
-                            { add(*crowd->getPosedMesh(CrowdDetail::instances(*crowd).handleOf(index), mesh)); });
+                addPoses(*crowd, CrowdDetail::instances(*crowd).controllerCopy(index),
+                         CrowdDetail::instances(*crowd).rootMatrix(index), std::min(_poseCount, maxCrowdPoseCount));
         traverse(transform);
     }
 
@@ -81,6 +91,19 @@ public:
     std::vector<osg::Vec3d> points;
 
 private:
+    void addPoses(osg::Group& node, AnimationController controller, const AffineMatrix& rootToNode, int poseCount)
+    {
+        PosedMeshes posed;
+        const double start = controller.time(), duration = controller.duration();
+        for (int pose = 0; pose < poseCount && (pose == 0 || duration > 0.0); ++pose)
+        {
+            if (pose > 0) controller.seek(std::fmod(start + duration * pose / poseCount, duration));
+            const PoseInstruction instruction = controller.instruction();
+            forEachMesh(node, [&](const SkinnedGeometry& mesh)
+                        { add(*posed.of(mesh, controller.sharedSet(), instruction, rootToNode)); });
+        }
+    }
+
     void add(const osg::Geometry& geometry)
     {
         const osg::Matrixd toGroup = osg::computeLocalToWorld(getNodePath());
@@ -88,7 +111,16 @@ private:
             for (const osg::Vec3& vertex : *vertices)
                 points.push_back(osg::Vec3d(vertex) * toGroup);
     }
+
+    int _poseCount;
 };
+
+std::vector<osg::Vec3d> pointsOf(osg::Group& group, int poseCount)
+{
+    PointCollector collector(poseCount);
+    group.osg::Group::traverse(collector);
+    return std::move(collector.points);
+}
 
 /// OSG's visitor of bounds, with the guard of SceneVisitor.
 class Bounds : public osg::ComputeBoundsVisitor
@@ -119,9 +151,12 @@ osg::BoundingBoxd extentOf(osg::Group& group)
 
 std::vector<osg::Vec3d> pointsOf(osg::Group& group)
 {
-    PointCollector collector;
-    group.osg::Group::traverse(collector);
-    return std::move(collector.points);
+    return pointsOf(group, 1);
+}
+
+std::vector<osg::Vec3d> sweptPointsOf(osg::Group& group)
+{
+    return pointsOf(group, 12);
 }
 
 } // namespace osgGpuAnimation

@@ -19,4 +19,7 @@ osg::BoundingBoxd extentOf(osg::Group& group);
 /// those of its outermost instances. Empty if nothing is drawn below.
 std::vector<osg::Vec3d> pointsOf(osg::Group& group);
 
+/// The same points in twelve poses, which are spread over the clips that play now; of crowds in three.
+std::vector<osg::Vec3d> sweptPointsOf(osg::Group& group);
+
 } // namespace osgGpuAnimation

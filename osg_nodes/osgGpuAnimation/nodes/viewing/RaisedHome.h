@@ -7,7 +7,7 @@ namespace osgGpuAnimation
 {
 
 /// An event callback: viewers' home view shows the node from in front, a little from the side and from above, as large
-/// as the window allows.
+/// as the window allows (see fillingDirection()).
 ///
 ///     studio->addEventCallback(new RaisedHome);
 ///

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace osgGpuAnimation
 {
@@ -65,17 +66,51 @@ Standpoint fittingStandpoint(const osg::Vec3d& back, const osg::Vec3d& up, const
     return place;
 }
 
+/// A direction to the eye, and the direction that is up in the picture.
+struct EyeDirection
+{
+    osg::Vec3d back;
+    osg::Vec3d up;
+};
+
+EyeDirection eyeDirection(const ViewDirection& direction)
+{
+    const double azimuth = osg::DegreesToRadians(direction.azimuth);
+    const double elevation = osg::DegreesToRadians(direction.elevation);
+    const osg::Vec3d level(std::sin(azimuth), -std::cos(azimuth), 0.0), above(0.0, 0.0, 1.0);
+    return {level * std::cos(elevation) + above * std::sin(elevation),
+            above * std::cos(elevation) - level * std::sin(elevation)};
+}
+
+/// True if the points are less than half as high as their footprint is deep and wide.
+bool lieFlat(const std::vector<osg::Vec3d>& points)
+{
+    osg::BoundingBoxd box;
+    for (const osg::Vec3d& point : points)
+        box.expandBy(point);
+    const osg::Vec3d size = box.valid() ? box._max - box._min : osg::Vec3d();
+    return size.z() < 0.5 * std::min(size.x(), size.y());
+}
+
+/// Height by width of the points in a parallel view.
+double proportionOf(const std::vector<osg::Vec3d>& points, const ViewDirection& direction)
+{
+    const EyeDirection eye = eyeDirection(direction);
+    const osg::Vec3d right = eye.up ^ eye.back;
+    osg::BoundingBoxd box;
+    for (const osg::Vec3d& point : points)
+        box.expandBy(point * right, point * eye.up, 0.0);
+    const double width = box.valid() ? box.xMax() - box.xMin() : 0.0;
+    return width > 0.0 ? (box.yMax() - box.yMin()) / width : std::numeric_limits<double>::infinity();
+}
+
 } // namespace
 
 Standpoint standpointFrom(const ViewDirection& direction, const std::vector<osg::Vec3d>& points, double fieldOfView,
                           double aspect, double margin)
 {
-    const double azimuth = osg::DegreesToRadians(direction.azimuth);
-    const double elevation = osg::DegreesToRadians(direction.elevation);
-    const osg::Vec3d level(std::sin(azimuth), -std::cos(azimuth), 0.0), above(0.0, 0.0, 1.0);
-    return fittingStandpoint(level * std::cos(elevation) + above * std::sin(elevation),
-                             above * std::cos(elevation) - level * std::sin(elevation), points, fieldOfView, aspect,
-                             margin);
+    const EyeDirection eye = eyeDirection(direction);
+    return fittingStandpoint(eye.back, eye.up, points, fieldOfView, aspect, margin);
 }
 
 Standpoint raisedStandpoint(const std::vector<osg::Vec3d>& points, double fieldOfView, double aspect, double margin)
@@ -83,6 +118,18 @@ Standpoint raisedStandpoint(const std::vector<osg::Vec3d>& points, double fieldO
     osg::Vec3d back(0.55, -1.0, 0.3);
     back.normalize();
     return fittingStandpoint(back, osg::Vec3d(0, 0, 1), points, fieldOfView, aspect, margin);
+}
+
+ViewDirection fillingDirection(const std::vector<osg::Vec3d>& points)
+{
+    constexpr double step = 4.0, maxElevation = 35.0; // degrees
+    constexpr double enough = 0.6;                    // height by width: from there on, windows are well filled
+    ViewDirection direction{osg::RadiansToDegrees(std::atan2(0.55, 1.0)),
+                            osg::RadiansToDegrees(std::atan2(0.3, std::hypot(0.55, 1.0)))};
+    if (lieFlat(points))
+        while (proportionOf(points, direction) < enough && direction.elevation + step <= maxElevation)
+            direction.elevation += step;
+    return direction;
 }
 
 void goHome(const osgGA::GUIEventAdapter& event, osgViewer::View& view, const Standpoint& place, const osg::Vec3d& up)

@@ -33,6 +33,10 @@ Standpoint standpointFrom(const ViewDirection& direction, const std::vector<osg:
 /// The same from -Y, a little from +X and from above: the direction 28.8, 14.7. Up is +Z.
 Standpoint raisedStandpoint(const std::vector<osg::Vec3d>& points, double fieldOfView, double aspect, double margin);
 
+/// That direction, too, but from up to 35 degrees above points that lie flat, such as a crowd: they would fill a narrow
+/// strip of the picture.
+ViewDirection fillingDirection(const std::vector<osg::Vec3d>& points);
+
 /// Makes it the home position of the view's camera manipulator, which must exist and goes there. up: above 0 in length.
 void goHome(const osgGA::GUIEventAdapter& event, osgViewer::View& view, const Standpoint& place, const osg::Vec3d& up);
 

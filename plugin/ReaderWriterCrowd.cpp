@@ -37,7 +37,7 @@ protected:
             OSG_WARN << className() << ": " << hint << std::endl;
         const std::string& modelFile = wanted.modelFile;
         osg::ref_ptr<Options> forModel = options ? options->cloneOptions() : new Options;
-        forModel->setOptionString(crowd::modelOptions(given) + " wholeModel");
+        forModel->setOptionString(crowd::modelOptions(given));
         ReadResult model = readModel(modelFile, forModel.get(), "crowd");
         if (!model.validNode()) return model;
         const Result<osg::ref_ptr<AnimatedCrowd>> crowd = crowd::makeCrowd(*model.getNode(), wanted);

@@ -7,6 +7,7 @@
 
 #include <osgGpuAnimation/frame/PoseStatistics.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/detail/StillParts.h>
 #include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
 #include <osg/Notify>
@@ -78,12 +79,13 @@ double medianWidth(const AnimatedCharacter& character, const osg::Matrixd& place
     return widths[widths.size() / 2];
 }
 
-/// True if the model draws meshes that belong to no character.
-bool hasStillMeshes(osg::Node& model)
+/// True if the model draws meshes that belong to no character and are no still parts of this one.
+bool hasOtherMeshes(osg::Node& model, const AnimatedCharacter& character)
 {
-    const auto isCharacter = [](const osg::Node& node)
-    { return dynamic_cast<const AnimatedCharacter*>(&node) != nullptr; };
-    return visitUntil(model, [&](osg::Node& node) { return node.asGeometry() && !findAbove(node, isCharacter); });
+    const osg::Group* const still = StillParts::of(character);
+    const auto isPart = [&](const osg::Node& node)
+    { return &node == still || dynamic_cast<const AnimatedCharacter*>(&node) != nullptr; };
+    return visitUntil(model, [&](osg::Node& node) { return node.asGeometry() && !findAbove(node, isPart); });
 }
 
 AnimationController randomController(const AnimatedCrowd& crowd, const std::vector<std::size_t>& clips,
@@ -134,11 +136,9 @@ Result<osg::ref_ptr<AnimatedCrowd>> makeCrowd(osg::Node& model, const CrowdOptio
     if (std::any_of(morphs.begin(), morphs.end(), [](const MorphWeights& morph) { return morph.isProperty(); }))
         OSG_WARN << "osgGpuAnimation: \"" << character->getName()
                  << "\" has animated materials, lights or visibility; a crowd shows them at rest" << std::endl;
-    if (hasStillMeshes(model))
-        OSG_WARN
-            << "osgGpuAnimation: \"" << character->getName()
-            << "\": meshes that are no part of it are left out; glTF files read with the option wholeModel have none"
-            << std::endl;
+    if (hasOtherMeshes(model, *character))
+        OSG_WARN << "osgGpuAnimation: \"" << character->getName() << "\": meshes that are no part of it are left out"
+                 << std::endl;
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*character);
     const osg::Matrixd placement = character->getWorldMatrices().front();
     const double spacing =

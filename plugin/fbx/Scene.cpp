@@ -9,8 +9,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <unordered_map>
+#include <utility>
 
 namespace osgGpuAnimation::fbx
 {
@@ -36,6 +38,38 @@ struct Connection
     std::int64_t other; ///< the source or the destination
     std::string_view property;
 };
+
+/// Names of which each occurs once, and where the search for further ones continues.
+struct TakenNames
+{
+    std::set<std::string, std::less<>> names;
+    /// The next number by the characters before it and its number of digits.
+    std::map<std::pair<std::string, std::size_t>, std::size_t> nextNumbers;
+};
+
+/// A name of the same length that is not taken yet: the name itself, or with a number in place of its last characters.
+/// None: all are taken. Each number is tried once, however many names there are.
+std::optional<std::string> takeName(const std::string& name, TakenNames& taken)
+{
+    if (taken.names.insert(name).second) return name;
+    constexpr std::string_view digits = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz";
+    constexpr std::size_t maxDigits = 8;
+    std::size_t first = 0, end = digits.size(); // the numbers of that many digits
+    for (std::size_t count = 1; count <= std::min(maxDigits, name.size()); ++count, first = end, end *= digits.size())
+    {
+        const std::string before = name.substr(0, name.size() - count);
+        std::size_t& next = taken.nextNumbers.try_emplace({before, count}, first).first->second;
+        while (next < end)
+        {
+            std::string made = name;
+            std::size_t rest = next++;
+            for (std::size_t place = name.size(); place > before.size(); --place, rest /= digits.size())
+                made[place - 1] = digits[rest % digits.size()];
+            if (taken.names.insert(made).second) return made;
+        }
+    }
+    return std::nullopt;
+}
 
 class SceneReader
 {
@@ -98,15 +132,13 @@ private:
         _scene.bytesForAssimp.replace(static_cast<std::size_t>(view.data() - _bytes.data()), with.size(), with);
     }
     /// taken: takes it, too.
-    std::string uniqueName(std::string_view name, std::set<std::string, std::less<>>& taken,
-                           bool withoutPoints = false);
+    std::string uniqueName(std::string_view name, TakenNames& taken, bool withoutPoints = false);
 
     Scene& _scene;
     const std::string& _bytes; ///< of which the document has views
     const Document& _document;
     double _ticksPerSecond = ticksPerSecond;
-    std::map<std::string, std::size_t> _attempts; ///< to find other names of the same length
-    std::vector<std::int64_t> _order;             ///< ids as the file has them
+    std::vector<std::int64_t> _order; ///< ids as the file has them
     std::vector<std::int64_t> _modelIds;
     std::unordered_map<std::int64_t, Object> _objects;
     std::unordered_map<std::int64_t, std::vector<Connection>> _sources, _destinations; ///< in the order of the file
@@ -187,32 +219,24 @@ void SceneReader::readConnections()
     }
 }
 
-std::string SceneReader::uniqueName(std::string_view name, std::set<std::string, std::less<>>& taken,
-                                    bool withoutPoints)
+std::string SceneReader::uniqueName(std::string_view name, TakenNames& taken, bool withoutPoints)
 {
-    std::string made(name);
-    if (withoutPoints) std::replace(made.begin(), made.end(), '.', '_');
-    std::size_t& attempt = _attempts[made]; // goes on where the last of this name ended
-    constexpr std::string_view digits = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz";
-    for (; !taken.insert(made).second; ++attempt)
+    std::string wanted(name);
+    if (withoutPoints) std::replace(wanted.begin(), wanted.end(), '.', '_');
+    const std::optional<std::string> made = takeName(wanted, taken);
+    if (!made)
     {
-        std::size_t rest = attempt, place = made.size();
-        for (; place > 0 && (rest > 0 || place == made.size()); --place, rest /= digits.size())
-            made[place - 1] = digits[rest % digits.size()];
-        if (rest > 0 || name.empty())
-        {
-            _scene.warnings.push_back("several nodes or shapes have the name " + gltf::quoted(name) +
-                                      ": they are taken as one; longer names tell them apart");
-            return std::string(name);
-        }
+        _scene.warnings.push_back("several nodes or shapes have the name " + gltf::quoted(name) +
+                                  ": they are taken as one; longer names tell them apart");
+        return std::string(name);
     }
-    if (made != name) patch(name, made);
-    return made;
+    if (*made != name) patch(name, *made);
+    return *made;
 }
 
 void SceneReader::readModels()
 {
-    std::set<std::string, std::less<>> taken{"RootNode"}; // Assimp's own
+    TakenNames taken{{"RootNode"}, {}}; // Assimp's own
     for (const std::int64_t id : _order)
     {
         const Object& each = *object(id);
@@ -270,7 +294,7 @@ void SceneReader::warnOfInheritance()
 
 void SceneReader::readShapes()
 {
-    std::set<std::string, std::less<>> taken, takenTargets;
+    TakenNames taken, takenTargets;
     for (const std::int64_t id : _order)
     {
         const Object& each = *object(id);

@@ -14,6 +14,7 @@
 #include <osgGpuAnimation/mesh/geometry/MaterialVariants.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 #include <osgGpuAnimation/nodes/CompactedCharacter.h>
+#include <osgGpuAnimation/nodes/detail/StillParts.h>
 #include <osgGpuAnimation/nodes/viewing/StartView.h>
 
 #include <osgDB/FileNameUtils>
@@ -194,7 +195,11 @@ void Importer::makeGraph(const NodeTree& tree, const Joints& joints, const Morph
     const SceneParts parts{_model, tree, joints, morphs, carries, drawables, _budget, _report};
     NodePlaces places(_model, tree, joints, _result.character,
                       buildSceneGraph(parts, *still, _result.character, _result.primitives));
-    if (_result.character && still->getNumChildren() > 0) _result.root->addChild(still);
+    if (_result.character && still->getNumChildren() > 0)
+    {
+        _result.root->addChild(still);
+        if (joints.ofStillMeshes >= 0) StillParts::set(*_result.character, *still, joints.ofStillMeshes);
+    }
     for (const ImportedCamera& camera : _result.cameras)
         places.add(static_cast<std::size_t>(camera.node), camera.view);
     nameVariants(variant);

@@ -13,8 +13,11 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <iterator>
+#include <set>
+#include <string>
 
 namespace osgGpuAnimation
 {
@@ -440,6 +443,30 @@ TEST(FbxDocumentTest, namesKeepTheirLengthAndPlaceInTheBytesForAssimp)
     EXPECT_NE(scene.models[1].uniqueName, scene.models[2].uniqueName);
     EXPECT_EQ(scene.models[2].name, "geo");
     EXPECT_NE(scene.models[3].uniqueName, "RootNode");
+    EXPECT_TRUE(scene.warnings.empty());
+}
+
+// Crafted: all names that are tried first for those that come again are taken.
+TEST(FbxDocumentTest, manyEqualNamesAreQuick)
+{
+    constexpr int count = 20'000;
+    const std::string digits = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz";
+    SmallFbx file;
+    for (int id = 1; id <= 2 * count; ++id)
+    {
+        std::string name = "n000";
+        for (std::size_t place = 3, rest = static_cast<std::size_t>(id % count); place > 0; --place, rest /= 62)
+            name[place] = digits[rest % 62];
+        file.model(id, name);
+    }
+    const std::string text = file.text();
+    const auto start = std::chrono::steady_clock::now();
+    const fbx::Scene scene = valueOf(fbx::Scene::read(text));
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
+    std::set<std::string> names;
+    for (const fbx::Model& model : scene.models)
+        EXPECT_TRUE(names.insert(model.uniqueName).second && model.uniqueName.size() == 4) << model.uniqueName;
+    EXPECT_EQ(names.size(), 2u * count);
     EXPECT_TRUE(scene.warnings.empty());
 }
 

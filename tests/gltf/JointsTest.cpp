@@ -141,8 +141,17 @@ TEST(JointsTest, targetsOfClipsAndTheMeshesBelow)
     file.slidingClip("wave", arm);
     EXPECT_EQ(jointNames(file), (Names{"root", "arm", "hand", "sword"}));
     const Built built(file);
+    const Skeleton& skeleton = built.joints.skeleton;
     EXPECT_EQ(rigidJoints(file.model, built.tree, built.joints),
-              std::vector<int>{built.joints.skeleton.findJoint("sword")});
+              (std::vector<int>{skeleton.findJoint("sword"), skeleton.findJoint("root")}));
+    EXPECT_EQ(built.joints.ofStillMeshes, skeleton.findJoint("root")) << "the stone follows it in a crowd";
+    const auto set = AnimationSet::create({skeleton, {}, rigidJoints(file.model, built.tree, built.joints), {}, {}});
+    EXPECT_EQ(valueOf(set)->paletteSize(), skeleton.jointCount()) << "at no cost";
+    ModelBuilder beside;
+    beside.slidingClip("wave", beside.node("arm", -1, beside.triangle()));
+    EXPECT_EQ(jointNames(beside), Names{"arm"});
+    beside.node("stone", beside.node("ground"), beside.triangle());
+    EXPECT_EQ(jointNames(beside), (Names{"arm", ""})) << "which does not move";
     ModelBuilder morphing;
     const int mesh = morphing.triangle();
     morphing.primitive(mesh).targets.push_back(morphing.primitive(mesh).attributes);

@@ -182,6 +182,13 @@ TEST(TinyGltfTest, numbersThatAreNotFiniteAreRefusedWhereMoreThanTheSurfaceNeeds
     file.primitive(0).attributes["NORMAL"] = file.primitive(0).attributes["POSITION"] =
         unbounded(file, TINYGLTF_TYPE_VEC3, numbers);
     expectAnswer(load(file.text()), Expect::Refuse, "expected finite numbers");
+    ModelBuilder shared = baseModel(); // the surface could do without
+    shared.primitive(0).attributes["NORMAL"] = unbounded(shared, TINYGLTF_TYPE_VEC3, numbers);
+    expectAnswer(load(shared.text()), Expect::Warn, "NORMAL: accessors");
+    shared.animation("shares");
+    shared.channel(hip, "translation", {0, 1, 2}, TINYGLTF_TYPE_VEC3, std::vector<float>(9, 0.0f));
+    shared.model.animations.back().samplers.back().output = shared.primitive(0).attributes["NORMAL"];
+    expectAnswer(load(shared.text()), Expect::Refuse, "expected finite numbers");
     ModelBuilder unused = baseModel();
     unbounded(unused, TINYGLTF_TYPE_VEC3, numbers);
     expectAnswer(load(unused.text()), Expect::Refuse, "expected finite numbers");

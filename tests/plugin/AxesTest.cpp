@@ -165,9 +165,9 @@ TEST_F(AxesTest, instancesKeepTheirPlacementsInOtherAxes)
     EXPECT_EQ(crowd->getPlacement(pole), placement);
     ASSERT_TRUE(crowd->setFileToNode({}));
     EXPECT_EQ(crowd->getPlacement(pole), placement);
-    expectNear(crowd->getBound().center(), {100.25, 22.0, 0.0});
+    expectNear(crowd->getBound().center(), {106.0, 22.0, 0.0}, 1e-5); // with the mesh that does not move
     ASSERT_TRUE(crowd->setFileToNode(character->getFileToNode()));
-    expectNear(crowd->getBound().center(), {100.25, 20.0, 2.0});
+    expectNear(crowd->getBound().center(), {106.0, 20.0, 2.0}, 1e-5);
 }
 
 } // namespace osgGpuAnimation

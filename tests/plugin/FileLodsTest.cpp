@@ -119,8 +119,9 @@ TEST(FileLodsTest, crowdsShowTheMostDetailedAndCopiesAndScenesKeepAll)
     const StoredScene store;
     const ImportedModel model = imported(levelsDocument().dump());
     const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*model.character);
-    ASSERT_EQ(crowd->getNumChildren(), 1u);
+    ASSERT_EQ(crowd->getNumChildren(), 2u);
     EXPECT_EQ(crowd->getChild(0), lodsOf(*model.character)[0]->getChild(0));
+    EXPECT_EQ(crowd->getChild(1)->getName(), "rock") << "which does not move";
     const osg::ref_ptr<AnimatedCharacter> copy = osg::clone(model.character.get(), osg::CopyOp::DEEP_COPY_NODES);
     EXPECT_EQ(lodsOf(*copy).size(), 1u);
     const osg::ref_ptr<osg::Node> stored = store.throughFile(*model.root, "osgt");

@@ -85,9 +85,10 @@ private:
         const osg::Matrixd toScene = osg::computeLocalToWorld(getNodePath());
         const Skeleton& skeleton = character.getAnimationSet().skeleton();
         for (std::size_t joint = 0; joint < skeleton.jointCount(); ++joint)
-            for (const osg::Vec3d& point : {osg::Vec3d(), osg::Vec3d(1, 0, 0), osg::Vec3d(0, 1, 0)})
-                points["joint " + skeleton.joint(joint).name].push_back(point * character.jointToModel(joint).value() *
-                                                                        toScene);
+            if (!skeleton.joint(joint).name.empty()) // else the import's own
+                for (const osg::Vec3d& point : {osg::Vec3d(), osg::Vec3d(1, 0, 0), osg::Vec3d(0, 1, 0)})
+                    points["joint " + skeleton.joint(joint).name].push_back(
+                        point * character.jointToModel(joint).value() * toScene);
     }
 
     const int _clip;

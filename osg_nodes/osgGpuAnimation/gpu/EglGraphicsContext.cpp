@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
 
+#include <osgGpuAnimation/gpu/detail/FixedPipeline.h>
+
 #include <osg/DisplaySettings>
 #include <osg/Fog>
 #include <osg/Light>
@@ -144,10 +146,7 @@ EGLConfig chooseConfig(EGLDisplay display, const osg::GraphicsContext::Traits& t
 /// An OSG built without the fixed pipeline has no use for a compatibility profile.
 bool wantsCore(const osg::GraphicsContext::Traits& traits)
 {
-#ifndef OSG_GL_FIXED_FUNCTION_AVAILABLE
-    return true;
-#endif
-    return (traits.glContextProfileMask & EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT) != 0;
+    return !hasFixedPipeline || (traits.glContextProfileMask & EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT) != 0;
 }
 
 EGLContext createContext(EGLDisplay display, EGLConfig config, const osg::GraphicsContext::Traits& traits,

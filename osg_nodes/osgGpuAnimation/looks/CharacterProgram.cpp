@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/looks/CharacterProgram.h>
 
+#include <osgGpuAnimation/gpu/detail/FixedPipeline.h>
 #include <osgGpuAnimation/looks/shading/ShaderPermutations.h>
 
 #include <layout.glsl>
@@ -112,11 +113,7 @@ osg::ref_ptr<osg::Shader> lightShader(bool isCore)
 
 osg::ref_ptr<osg::Shader> lightShader()
 {
-#ifdef OSG_GL_FIXED_FUNCTION_AVAILABLE
-    return lightShader(false);
-#else
-    return lightShader(true);
-#endif
+    return lightShader(!hasFixedPipeline);
 }
 
 void bindSkinAttributes(osg::Program& program)

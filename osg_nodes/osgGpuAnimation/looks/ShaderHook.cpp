@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/looks/ShaderHook.h>
 
+#include <osgGpuAnimation/looks/shading/HookPlaces.h>
+
 #include <ShaderSources.h>
 
 #include <osg/Notify>
@@ -8,6 +10,7 @@
 #include <osg/State>
 
 #include <atomic>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -20,26 +23,10 @@ namespace
 
 std::atomic<bool> hasHooks{false};
 
-struct Function
-{
-    osg::Shader::Type type;
-    const char* name;
-    const char* declaration;
-};
-
-/// By ShaderHook::Place.
-constexpr Function functions[ShaderHook::placeCount] = {
-    {osg::Shader::VERTEX, "hostEyeVertex", "void hostEyeVertex(inout vec4 vertex, inout vec3 normal)"},
-    {osg::Shader::VERTEX, "hostClipVertex", "void hostClipVertex(inout vec4 position, vec4 vertex)"},
-    {osg::Shader::FRAGMENT, "hostMaterial",
-     "void hostMaterial(inout vec4 baseColor, inout vec3 emission, inout vec3 metallicRoughnessOcclusion, inout vec3 "
-     "normal)"},
-    {osg::Shader::FRAGMENT, "hostLitColor", "void hostLitColor(inout vec4 color)"},
-    {osg::Shader::FRAGMENT, "hostFinalColor", "void hostFinalColor(inout vec4 color)"},
-};
+static_assert(std::size(hookPlaces) == ShaderHook::placeCount);
 
 /// One shader for all hooks with a text, as programs are shared by the addresses of their shaders.
-osg::ref_ptr<osg::Shader> shaderOf(const Function& function, const std::string& text)
+osg::ref_ptr<osg::Shader> shaderOf(const HookPlace& function, const std::string& text)
 {
     static std::mutex mutex;
     static std::map<std::pair<osg::Shader::Type, std::string>, osg::observer_ptr<osg::Shader>> shaders;
@@ -58,7 +45,7 @@ osg::ref_ptr<osg::Shader> shaderOf(const Function& function, const std::string& 
 
 void ShaderHook::set(Place place, const std::string& text)
 {
-    const Function& function = functions[static_cast<std::size_t>(place)];
+    const HookPlace& function = hookPlaces[static_cast<std::size_t>(place)];
     _place = place;
     _text = text;
     const bool isDefined = text.find(function.name) != std::string::npos;

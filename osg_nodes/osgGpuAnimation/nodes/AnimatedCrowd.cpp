@@ -15,6 +15,7 @@
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/callbacks/WorldTargets.h>
+#include <osgGpuAnimation/nodes/detail/StillParts.h>
 #include <osgGpuAnimation/nodes/Outfit.h>
 #include <osgGpuAnimation/nodes/properties/AnimatedProperties.h>
 #include <osgGpuAnimation/nodes/properties/CrowdOutfits.h>
@@ -71,10 +72,12 @@ AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character)
     setName(character.getName());
     if (character.getStateSet()) setStateSet(const_cast<osg::StateSet*>(character.getStateSet()));
     addUnanimated(character, getAnimationSet(), *this);
+    const bool hasStillParts = StillParts::addTo(*this, character); // which the character's bounds do not include
     std::vector<Box> bounds;
     for (int clip = -1; clip < static_cast<int>(getAnimationSet().clips().size()); ++clip)
         bounds.push_back(toBox(character.clipBoundsInFile(clip)));
-    if (std::any_of(bounds.begin(), bounds.end(), [](const Box& box) { return !box.empty(); }))
+    const bool areKnown = std::any_of(bounds.begin(), bounds.end(), [](const Box& box) { return !box.empty(); });
+    if (areKnown && !hasStillParts)
         _instances->setClipBounds(bounds, character._mixBounds);
     else
         computeBounds();

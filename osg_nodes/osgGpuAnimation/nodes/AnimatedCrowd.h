@@ -60,7 +60,7 @@ public:
     /// set: null counts as an empty one. meshes: built for the set's palette.
     AnimatedCrowd(std::shared_ptr<const AnimationSet> set, const std::vector<osg::ref_ptr<SkinnedGeometry>>& meshes);
     /// Shares the character's set, meshes and state, and copies its bounds, pixel error and getFileToNode(). Ignores
-    /// its matrix.
+    /// its matrix. The meshes of its glTF file that do not move are meshes of the crowd, too.
     explicit AnimatedCrowd(const AnimatedCharacter& character);
     /// Copies the instances with their handles.
     AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);

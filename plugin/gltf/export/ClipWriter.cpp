@@ -27,6 +27,12 @@ struct JointPath
 constexpr JointPath jointPaths[] = {
     {"translation", "VEC3", 0, 3, false}, {"rotation", "VEC4", 4, 4, true}, {"scale", "VEC3", 8, 3, false}};
 
+/// True for the joint that meshes that do not move follow in a crowd, see Joints in Joints.h. An import adds it again.
+bool isOfImport(const Joint& joint)
+{
+    return joint.name.empty() && joint.parent < 0 && joint.sourceNode < 0;
+}
+
 std::vector<float> restValues(const AnimationSet& set, const ClipProperty& property)
 {
     std::vector<float> values;
@@ -87,14 +93,14 @@ void ClipWriter::write(const WrittenCharacter& character, const Clip& clip, bool
             const ClipKeys keys = keysOf(clip, property, restValues(set, property));
             if (!keys.times.empty() && count == targets) addChannel(animation, node, "weights", "SCALAR", keys);
         }
-    // A joint is a node that a skin has or a clip moves: those without either keep their rest pose as keys. A clip
-    // without keys would lose its duration.
+    // A joint is a node that a skin has or a clip moves: those without either keep their rest pose as keys, except the
+    // one that the import adds. A clip without keys would lose its duration.
     std::vector<float> times{clip.times().front()};
     if (clip.times().back() > times.front()) times.push_back(clip.times().back());
     for (std::size_t joint = 0; joint < isMoved.size(); ++joint)
     {
         const bool isNeeded = isFirst ? !character.isInSkin[joint] : !animation.contains("channels");
-        if (isMoved[joint] || !isNeeded) continue;
+        if (isMoved[joint] || !isNeeded || isOfImport(set.skeleton().joint(joint))) continue;
         const ClipProperty property{joint, 0, 3, false};
         ClipKeys keys;
         keys.times = times;

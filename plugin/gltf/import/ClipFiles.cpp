@@ -125,17 +125,17 @@ Result<std::shared_ptr<const AnimationSet>> readSet(const std::string& path, con
     return AnimationSet::create({joints.value().skeleton, {}, {}, morphs.weights, std::move(clips.clips)});
 }
 
-/// Those of the names that the set's skins use; all, if it has no skins.
+/// Those of the names that the set's skins use; if it has no skins, all that are not empty.
 std::vector<std::string> namesInSkins(const AnimationSet& set, const std::vector<std::string>& names)
 {
-    if (set.skins().empty()) return names;
+    const bool isSkinned = !set.skins().empty();
     std::unordered_set<std::string> inSkins;
     for (const Skin& skin : set.skins())
         for (const int joint : skin.joints)
             inSkins.insert(set.skeleton().joint(static_cast<std::size_t>(joint)).name);
     std::vector<std::string> chosen;
     std::copy_if(names.begin(), names.end(), std::back_inserter(chosen),
-                 [&](const std::string& name) { return inSkins.count(name) > 0; });
+                 [&](const std::string& name) { return isSkinned ? inSkins.count(name) > 0 : !name.empty(); });
     return chosen;
 }
 

@@ -11,6 +11,7 @@
 #include <osgGpuAnimation/animation/bounds/TransformBound.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace osgGpuAnimation::gltf
 {
@@ -80,6 +81,18 @@ std::vector<bool> jointNodes(const tinygltf::Model& model, const NodeTree& tree,
     for (auto node = tree.order.rbegin(); node != tree.order.rend(); ++node)
         if (elementOf(joints, *node)) mark(joints, elementOf(tree.parents, *node));
     return joints;
+}
+
+/// True if the drawn part has a mesh that does not move.
+bool hasStillMeshes(const tinygltf::Model& model, const NodeTree& tree, const std::vector<bool>& moves)
+{
+    for (std::size_t index = 0; index < model.nodes.size(); ++index)
+    {
+        const tinygltf::Node& node = model.nodes[index];
+        const tinygltf::Mesh* mesh = tree.drawn[index] && !moves[index] ? meshOf(model, node) : nullptr;
+        if (mesh && morphTargetCount(*mesh) == 0 && carriesRigidMesh(node, *mesh)) return true;
+    }
+    return false;
 }
 
 std::vector<AffineMatrix> readInverseBinds(const tinygltf::Model& model, const tinygltf::Skin& skin)
@@ -165,6 +178,8 @@ std::vector<int> rigidJoints(const tinygltf::Model& model, const NodeTree& tree,
         if (mesh && std::any_of(mesh->primitives.begin(), mesh->primitives.end(), isRigid))
             result.push_back(joints.ofNode[node]);
     }
+    const bool isNew = std::find(result.begin(), result.end(), joints.ofStillMeshes) == result.end();
+    if (joints.ofStillMeshes >= 0 && isNew) result.push_back(joints.ofStillMeshes);
     return result;
 }
 
@@ -175,6 +190,7 @@ Result<Joints> buildJoints(const tinygltf::Model& model, const NodeTree& tree, c
     std::vector<int> inputOfNode(model.nodes.size(), -1);
     std::vector<bool> isSheared(model.nodes.size(), false);
     std::vector<Joint> joints;
+    std::optional<std::size_t> still; // of the joints, the first that does not move
     for (const int node : tree.order)
     {
         const auto index = static_cast<std::size_t>(node);
@@ -191,7 +207,14 @@ Result<Joints> buildJoints(const tinygltf::Model& model, const NodeTree& tree, c
             isSheared[index] = true;
         }
         inputOfNode[index] = static_cast<int>(joints.size());
+        if (!still && !moves[index]) still = joints.size();
         joints.push_back({model.nodes[index].name, parent, transform.inner, node});
+    }
+    const bool needsStill = !joints.empty() && hasStillMeshes(model, tree, moves);
+    if (needsStill && !still)
+    {
+        still = joints.size();
+        joints.push_back({"", -1, JointTransform(), -1});
     }
     Result<Skeleton> skeleton = Skeleton::create(std::move(joints));
     if (!skeleton) return skeleton.error();
@@ -208,6 +231,7 @@ Result<Joints> buildJoints(const tinygltf::Model& model, const NodeTree& tree, c
     {
         if (joint >= 0) joint = result.skeleton.jointOfInput(static_cast<std::size_t>(joint));
     }
+    if (needsStill) result.ofStillMeshes = result.skeleton.jointOfInput(*still);
     return result;
 }
 

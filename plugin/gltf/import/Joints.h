@@ -17,13 +17,17 @@ namespace osgGpuAnimation::gltf
 
 /// The joints of a file are these nodes: every joint of a skin, every target of an animation (of this file or another
 /// one), every node with a mesh under one of those (except skinned meshes, whose node has no effect), every node with a
-/// morphing mesh, and all their ancestors. A node whose matrix shears has two joints, see NodeTransform.
+/// morphing mesh, and all their ancestors. A node whose matrix shears has two joints, see NodeTransform. If all these
+/// joints move, but not all meshes, there is a nameless joint that does not.
 struct Joints
 {
     Skeleton skeleton;
     std::vector<int> ofNode;     ///< one per node: its joint, -1 if it is not a joint
     std::vector<bool> moves;     ///< one per node: a skin or a clip can move it or an ancestor
     std::vector<bool> isSheared; ///< one per node: it has two joints, so clips cannot drive it
+    /// The joint that meshes that do not move follow in a crowd: it does not move; -1: there are no such meshes. Only
+    /// the nameless joint costs a palette entry.
+    int ofStillMeshes = -1;
 };
 
 /// movedNodes: one per node, true if clips of another file move it; empty: none.
@@ -50,7 +54,7 @@ bool isSkinned(const tinygltf::Node& node, const tinygltf::Primitive& primitive)
 bool isRigidOnJoint(const tinygltf::Model& model, const Joints& joints, std::size_t node,
                     const tinygltf::Primitive& primitive);
 
-/// The joints that carry such a primitive of the drawn part, each once.
+/// The joints that carry such a primitive of the drawn part, and Joints::ofStillMeshes, each once.
 std::vector<int> rigidJoints(const tinygltf::Model& model, const NodeTree& tree, const Joints& joints);
 
 /// All skins of the file, in its order (glTF 2.0, section 3.7.3). Absent inverseBindMatrices are identities.

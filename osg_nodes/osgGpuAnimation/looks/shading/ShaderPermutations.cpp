@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/looks/shading/ShaderPermutations.h>
 
+#include <osgGpuAnimation/gpu/detail/FixedPipeline.h>
 #include <osgGpuAnimation/looks/PbrMaterial.h>
+#include <osgGpuAnimation/looks/shading/HookPlaces.h>
 #include <osgGpuAnimation/looks/shading/PunctualLight.h>
 #include <osgGpuAnimation/looks/shading/ViewLights.h>
 #include <osgGpuAnimation/scene/traversal/CullScopes.h>
@@ -66,12 +68,10 @@ bool isTexturingOn(osg::State& state)
                    [](const osg::StateSet& stateSet)
                    {
                        osg::StateAttribute::GLModeValue mode = stateSet.getTextureMode(0, GL_TEXTURE_2D);
-#ifndef OSG_GL_FIXED_FUNCTION_AVAILABLE
-                       // To such an OSG a texture has no mode.
-                       if (mode == osg::StateAttribute::INHERIT &&
+                       // To an OSG without the fixed pipeline a texture has no mode.
+                       if (!hasFixedPipeline && mode == osg::StateAttribute::INHERIT &&
                            stateSet.getTextureAttribute(0, osg::StateAttribute::TEXTURE))
                            mode = osg::StateAttribute::ON;
-#endif
                        return mode;
                    });
 }
@@ -303,12 +303,9 @@ std::string ShaderKey::defines() const
 {
     const auto line = [](const char* name, unsigned int value)
     { return std::string("#define ") + name + " " + std::to_string(value) + "\n"; };
-    static constexpr std::array<const char*, ShaderHook::placeCount> hookDefines = {
-        "#define HOOK_EYE_VERTEX\n", "#define HOOK_CLIP_VERTEX\n", "#define HOOK_MATERIAL\n#define GIVEN_MATERIAL\n",
-        "#define HOOK_LIT_COLOR\n", "#define HOOK_FINAL_COLOR\n"};
     std::string ofHooks;
     for (std::size_t place = 0; place < hooks.size(); ++place)
-        if (hooks[place]) ofHooks += hookDefines[place];
+        if (hooks[place]) ofHooks += hookPlaces[place].defines;
     return line("DRAW_FIXED_PIPELINE", !isCore) + line("DRAW_COLOR", !isDepthOnly) + line("DRAW_ALPHA", isAlphaNeeded) +
            line("DRAW_LIGHTING", isLit) + line("DRAW_FLAT_NORMALS", hasFlatNormals) +
            line("DRAW_SPECULAR", hasSpecular) + line("DRAW_TEXTURE", isTextured) +
@@ -332,11 +329,10 @@ osg::ref_ptr<osg::Texture2D> whiteTexture()
 
 ShaderPermutations::ShaderPermutations(osg::Shader* skin) : _skin(skin)
 {
-#ifndef OSG_GL_FIXED_FUNCTION_AVAILABLE
+    if (hasFixedPipeline) return;
     // Such an OSG makes the program itself current in a compile traversal, even if it has no shaders.
     addShader(new osg::Shader(osg::Shader::VERTEX, "#version 140\nvoid main() { gl_Position = vec4(0.0); }\n"));
     addShader(new osg::Shader(osg::Shader::FRAGMENT, "#version 140\nvoid main() {}\n"));
-#endif
 }
 
 ShaderPermutations::ShaderPermutations(const ShaderPermutations& other, const osg::CopyOp& copyop)
@@ -411,9 +407,7 @@ void ShaderPermutations::apply(osg::State& state) const
 // A compile traversal applies no defines, and every mesh that moves has some: prepareFirstDraw() compiles its programs.
 void ShaderPermutations::compileGLObjects(osg::State& state) const
 {
-#ifndef OSG_GL_FIXED_FUNCTION_AVAILABLE
-    osg::Program::compileGLObjects(state);
-#endif
+    if (!hasFixedPipeline) osg::Program::compileGLObjects(state);
     if (_skin) return;
     ShaderKey surface;
     surface.isCore = isCoreProfile(state);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/looks/shading/ViewLights.h>
 
+#include <osgGpuAnimation/gpu/detail/FixedPipeline.h>
+
 #include <osg/Fog>
 #include <osg/GLExtensions>
 #include <osg/GraphicsContext>
@@ -161,9 +163,7 @@ void ViewLightsCallback::operator()(osg::Node* node, osg::NodeVisitor* visitor)
 
 bool isCoreProfile(const osg::State& state)
 {
-#ifndef OSG_GL_FIXED_FUNCTION_AVAILABLE
-    return true; // OSG sets no lights and no fog, whatever the context is
-#endif
+    if (!hasFixedPipeline) return true;
     if (!state.getUseModelViewAndProjectionUniforms()) return false;
     // OSG keeps what it knows of a context by its number, which the next context may have, too.
     thread_local osg::observer_ptr<const osg::GraphicsContext> known;

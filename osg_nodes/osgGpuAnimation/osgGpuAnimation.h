@@ -64,6 +64,7 @@
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 #include <osgGpuAnimation/nodes/CharacterMeshes.h>
 #include <osgGpuAnimation/nodes/CompactedCharacter.h>
+#include <osgGpuAnimation/nodes/CrowdOutfits.h>
 #include <osgGpuAnimation/nodes/GroundFeet.h>
 #include <osgGpuAnimation/nodes/GroundLeg.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>

@@ -11,6 +11,7 @@
 #include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
 #include <osg/Notify>
+#include <osgDB/ReadFile>
 
 #include <algorithm>
 #include <optional>
@@ -102,11 +103,13 @@ AnimationController randomController(const AnimatedCrowd& crowd, const std::vect
 Result<std::vector<OutfitShare>> addOutfits(AnimatedCrowd& crowd, const CrowdOptions& options)
 {
     if (options.outfits.empty()) return std::vector<OutfitShare>();
+    const OutfitReaders readers{[](const std::string& path) { return osgDB::readRefImageFile(path); },
+                                [](const std::string& path) { return osgDB::readRefNodeFile(path); }};
     Result<std::vector<OutfitShare>> outfits =
-        options.outfits == "random" ? randomOutfits(crowd, options.seed) : readOutfitsFile(options.outfits);
+        options.outfits == "random" ? randomOutfits(crowd, options.seed) : readOutfitsFile(options.outfits, readers);
     if (!outfits) return outfits;
     for (const OutfitShare& each : outfits.value())
-        if (const Result<void> added = crowd.addOutfit(each.outfit); !added)
+        if (const Result<void> added = crowd.getOutfits().add(each.outfit); !added)
             return Error{options.outfits + ": " + added.error().message};
     return outfits;
 }
@@ -155,7 +158,7 @@ Result<osg::ref_ptr<AnimatedCrowd>> makeCrowd(osg::Node& model, const CrowdOptio
         const double y = spacing * (row - 0.5 * static_cast<double>(options.rows - 1));
         const osg::Matrixd moved = osg::Matrixd::translate(x, options.isYUp ? 0.0 : y, options.isYUp ? -y : 0.0);
         const OutfitShare worn = outfits.value().empty() ? OutfitShare() : randomOutfit(outfits.value(), ofOutfits);
-        const osg::Matrixd size = osg::Matrixd::scale(worn.size, worn.size, worn.size);
+        const osg::Matrixd size = osg::Matrixd::scale(worn.size);
         const Result<AnimatedCrowd::Instance> added =
             crowd->add(size * placement * moved, randomController(*crowd, clips.value(), random));
         if (!added) return added.error();

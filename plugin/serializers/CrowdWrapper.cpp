@@ -83,7 +83,7 @@ void transferInstance(ValueStream& stream, StoredInstance& instance, std::size_t
 void transferList(ValueStream& stream, AnimatedCrowd& crowd)
 {
     const osg::Matrixd toPlacement = osg::Matrixd::inverse(crowd.getFileToNode());
-    const std::vector<osg::ref_ptr<Outfit>> outfits = crowd.getOutfits();
+    const std::vector<osg::ref_ptr<Outfit>> outfits = crowd.getOutfits().getList();
     const auto numberOf = [&](const Outfit* outfit)
     {
         const auto place = std::find(outfits.begin(), outfits.end(), outfit);
@@ -111,10 +111,10 @@ void transferList(ValueStream& stream, AnimatedCrowd& crowd)
 
 void transferOutfits(ValueStream& stream, AnimatedCrowd& crowd)
 {
-    std::vector<osg::ref_ptr<Outfit>> outfits = crowd.getOutfits();
+    std::vector<osg::ref_ptr<Outfit>> outfits = crowd.getOutfits().getList();
     stream.list("Outfits", outfits, [&](osg::ref_ptr<Outfit>& outfit) { stream.object(outfit); });
     for (const osg::ref_ptr<Outfit>& outfit : outfits)
-        if (stream.hasRead()) stream.require("a crowd: ", crowd.addOutfit(outfit));
+        if (stream.hasRead()) stream.require("a crowd: ", crowd.getOutfits().add(outfit));
 }
 
 void transferInstances(ValueStream& stream, AnimatedCrowd& crowd)

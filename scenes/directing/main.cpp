@@ -2,18 +2,18 @@
 // Usage: direct_scenes SCENES FOLDER
 //        direct_scenes --view SCENES
 // Reads SCENES/Wanderer.glb and draws into FOLDER, without a display: Crossfade.png, Mask.png and others, each a row of
-// wanderers, Crowd.png and Gaze.png, thousands of them, and Hill.png. With --view it shows the hill in a window. The
+// wanderers, Gaze.png and Hill.png, and Street.png of SCENES/People.glb. With --view it shows the hill in a window. The
 // plugin is looked for where OSG_LIBRARY_PATH says. Ends with 77 where there is no GL, and with 1 where there is no
 // display for --view.
 
 #include "Hill.h"
 #include "Props.h"
+#include "Street.h"
 
 #include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
 #include <osgGpuAnimation/looks/Environment.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
-#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 #include <osgGpuAnimation/nodes/studio/Studio.h>
 
@@ -25,7 +25,6 @@
 #include <cmath>
 #include <functional>
 #include <iostream>
-#include <random>
 #include <string>
 
 using namespace osgGpuAnimation;
@@ -221,32 +220,6 @@ osg::ref_ptr<osg::Group> makeRow(const osg::Node& model, const Row& row)
     return sunlight;
 }
 
-/// A field of wanderers, most of them walking the same way, each at its own time and a little out of line.
-osg::ref_ptr<AnimatedCrowd> makeCrowd(AnimatedCharacter& wanderer)
-{
-    osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(wanderer);
-    std::mt19937 random(7);
-    const auto between = [&](double low, double high)
-    { return low + (high - low) * static_cast<double>(random()) / static_cast<double>(std::mt19937::max()); };
-    constexpr int columns = 60, rows = 70;
-    for (int i = 0; i < columns * rows; ++i)
-    {
-        const char* clips[] = {"Walk", "Walk", "Walk", "Wave", "Idle", "Run"};
-        AnimationController controller(crowd->getSharedAnimationSet());
-        if (!succeeds(controller.play(clips[random() % 6]))) return crowd;
-        controller.seek(between(0.0, 3.0));
-        const osg::Vec3d place(1.3 * (i % columns - 0.5 * columns) + between(-0.4, 0.4),
-                               1.3 * (i / columns) + between(-0.4, 0.4), 0.0);
-        const double shade = between(0.7, 1.0);
-        const osg::Vec4 tint(shade, shade * between(0.8, 1.0), shade * between(0.7, 1.0), 1.0);
-        if (!succeeds(crowd->add(osg::Matrixd::rotate(between(0.1, 0.7), osg::Vec3d(0, 0, 1)) *
-                                     osg::Matrixd::translate(place),
-                                 controller, tint)))
-            return crowd;
-    }
-    return crowd;
-}
-
 /// Where the camera stands and what it looks at.
 struct Sight
 {
@@ -362,13 +335,14 @@ int main(int argc, char** argv)
                 draw(scene, surroundings, row.onRamps ? legs : whole, row.seconds, folder + "/" + row.name + ".png")))
             return 1;
     }
-    AnimatedCharacter* wanderer = findCharacter(*model);
-    if (!wanderer) return 1;
-    const Result<osg::ref_ptr<osg::Node>> gazers = makeGazers(*model), hill = makeHill(*model);
-    if (!succeeds(gazers) || !succeeds(hill)) return 1;
-    const Sight fromAbove{{-2, -4.5, 4.2}, {1, 9, 0}, 36.0}, square{{0, -6, 2.9}, {0, 6, 0.9}, 36.0};
+    const osg::ref_ptr<osg::Node> people = osgDB::readRefNodeFile(scenes + "/People.glb", new osgDB::Options("noKeys"));
+    if (!people) return 1;
+    const Result<osg::ref_ptr<osg::Node>> gazers = makeGazers(*model), hill = makeHill(*model),
+                                          street = makeStreet(*people, scenes + "/People.outfits.json");
+    if (!succeeds(gazers) || !succeeds(hill) || !succeeds(street)) return 1;
+    const Sight alongTheStreet{{-3, -6.5, 4.6}, {0.6, 10, 0}, 33.0}, square{{0, -6, 2.9}, {0, 6, 0.9}, 36.0};
     const Sight onTheHill{{-1.6, 2.2, 1.5}, {1.86, 1.95, 1.17}, 34.0};
-    const bool isDrawn = succeeds(draw(makeCrowd(*wanderer), new Studio, fromAbove, 0.0, folder + "/Crowd.png")) &&
+    const bool isDrawn = succeeds(draw(street.value(), new Studio, alongTheStreet, 0.0, folder + "/Street.png")) &&
                          succeeds(draw(gazers.value(), new Studio, square, 0.0, folder + "/Gaze.png")) &&
                          succeeds(draw(hill.value(), new Environment, onTheHill, 3.0, folder + "/Hill.png"));
     return isDrawn ? 0 : 1;

@@ -25,19 +25,19 @@ TEST(OutfitsFileTest, hasWhatOutfitsHave)
     const ScratchFolder folder;
     const Result<std::vector<OutfitShare>> outfits =
         read(folder, R"({ "outfits": [ { "name": "pilgrim", "share": 2.5, "size": 0.75, "hide": ["Hat", "Cap"],
-            "show": "Hood", "variant": "winter", "colors": { "Coat": "#ff8000" } }, {} ] })");
+            "show": "Hood", "variant": "winter", "colors": { "Coat": "#ff8000" } }, { "size": [1.2, 1.1, 0.9] } ] })");
     ASSERT_TRUE(hasError(outfits, ""));
     ASSERT_EQ(outfits.value().size(), 2u);
     const OutfitShare& pilgrim = outfits.value()[0];
     EXPECT_EQ(pilgrim.share, 2.5);
-    EXPECT_EQ(pilgrim.size, 0.75);
+    EXPECT_EQ(pilgrim.size, osg::Vec3d(0.75, 0.75, 0.75));
     EXPECT_EQ(pilgrim.outfit->getName(), "pilgrim");
     EXPECT_EQ(pilgrim.outfit->getVariant(), "winter");
     EXPECT_EQ(pilgrim.outfit->getVisibility(),
               (std::map<std::string, bool>{{"Hat", false}, {"Cap", false}, {"Hood", true}}));
     EXPECT_EQ(pilgrim.outfit->getColors().at("Coat"), osg::Vec4(1, 128 / 255.0f, 0, 1));
     EXPECT_EQ(outfits.value()[1].share, 1.0);
-    EXPECT_EQ(outfits.value()[1].size, 1.0);
+    EXPECT_EQ(outfits.value()[1].size, osg::Vec3d(1.2, 1.1, 0.9));
 }
 
 TEST(OutfitsFileTest, faultsNameTheMember)
@@ -55,14 +55,16 @@ TEST(OutfitsFileTest, faultsNameTheMember)
         {R"({ "share": -1 })", "outfits[0].share: expected at least 0"},
         {R"({ "share": 0 })", "outfits: there is none with a share above 0"},
         {R"({ "size": 0 })", "outfits[0].size: expected above 0"},
+        {R"({ "size": [1, 1, -1] })", "outfits[0].size: expected above 0"},
+        {R"({ "size": [1, 1] })", "outfits[0].size: expected a number or an array of three numbers"},
         {R"({ "colors": { "Coat": "red" } })", "outfits[0].colors.Coat: \"red\" is no colour like \"#7a5c3a\""},
         {R"({ "colors": ["#000000"] })", "outfits[0].colors: expected an object, found array"},
         {R"({ "pictures": { "Coat": "../secret.png" } })",
          "outfits[0].pictures.Coat: \"../secret.png\" is not in the folder"},
         {R"({ "pictures": { "Coat": "/etc/passwd" } })", "is not in the folder of the file"},
-        {R"({ "pictures": { "Coat": "none.png" } })", "none.png is no picture that OSG can read"},
+        {R"({ "pictures": { "Coat": "none.png" } })", "none.png is no picture that can be read"},
         {R"({ "props": [ { "file": "hat.glb" } ] })", "outfits[0].props[0]: it has no \"joint\""},
-        {R"({ "props": [ { "joint": "Head", "file": "none.osgt" } ] })", "none.osgt is no model that OSG can read"},
+        {R"({ "props": [ { "joint": "Head", "file": "none.osgt" } ] })", "none.osgt is no model that can be read"},
         {R"({ "name": "a", "name": "b" })", "member \"name\" comes twice"},
     };
     for (const auto& each : cases)

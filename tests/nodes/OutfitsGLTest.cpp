@@ -86,7 +86,7 @@ protected:
             if (i + 1 < count && isOneCrowd)
             {
                 const osg::ref_ptr<Outfit> outfit = makeOutfit(dresses[i].dress, dresses[i].name);
-                EXPECT_TRUE(hasError(crowd->addOutfit(outfit), ""));
+                EXPECT_TRUE(hasError(crowd->getOutfits().add(outfit), ""));
                 EXPECT_TRUE(hasError(crowd->setOutfit(instance, outfit), ""));
             }
             else if (i + 1 < count)
@@ -127,7 +127,7 @@ protected:
         {
             worn.push_back(new Outfit);
             if (i % 3 > 0) worn.back()->setVisible(i % 3 == 1 ? "front" : "side", false);
-            EXPECT_TRUE(hasError(crowd->addOutfit(worn.back()), ""));
+            EXPECT_TRUE(hasError(crowd->getOutfits().add(worn.back()), ""));
         }
         for (std::size_t i = 0; i < 240; ++i)
         {

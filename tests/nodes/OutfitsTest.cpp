@@ -33,10 +33,10 @@ TEST_P(OutfitFaultsTest, nameWhatDoesNotFit)
     const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeDressedCharacter());
     const osg::ref_ptr<Outfit> worn = makeOutfit([](Outfit&) {}, "worn"),
                                faulty = makeOutfit(GetParam().dress, "guard");
-    EXPECT_TRUE(hasError(crowd->addOutfit(worn), ""));
-    EXPECT_TRUE(hasError(crowd->addOutfit(faulty), std::string("outfit \"guard\": ") + GetParam().message));
-    EXPECT_FALSE(crowd->replaceOutfit(worn, faulty));
-    EXPECT_EQ(crowd->getOutfits(), std::vector<osg::ref_ptr<Outfit>>{worn});
+    EXPECT_TRUE(hasError(crowd->getOutfits().add(worn), ""));
+    EXPECT_TRUE(hasError(crowd->getOutfits().add(faulty), std::string("outfit \"guard\": ") + GetParam().message));
+    EXPECT_FALSE(crowd->getOutfits().replace(worn, faulty));
+    EXPECT_EQ(crowd->getOutfits().getList(), std::vector<osg::ref_ptr<Outfit>>{worn});
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -58,7 +58,7 @@ INSTANTIATE_TEST_SUITE_P(
         FaultCase{"noNode", [](Outfit& outfit) { outfit.addProp("tip", nullptr); },
                   "the prop on joint \"tip\": it has no node"},
         FaultCase{"emptyNode", [](Outfit& outfit) { outfit.addProp("tip", new osg::Group); },
-                  "the prop on joint \"tip\": \"\" has no geometry with vertices of three floats"},
+                  "the prop on joint \"tip\": \"\" has no still geometry with vertices of three floats"},
         FaultCase{"mirror", [](Outfit& outfit) { outfit.addProp("tip", makeBox(), osg::Matrixd::scale(-1, 1, 1)); },
                   "the prop on joint \"tip\": the transform to the joint"}),
     [](const ::testing::TestParamInfo<FaultCase>& info) { return std::string(info.param.name); });
@@ -71,20 +71,20 @@ TEST(OutfitsTest, aCrowdHas256AtMost)
     for (std::size_t i = 0; i < OutfitLists::maxOutfits; ++i)
     {
         outfits.push_back(new Outfit);
-        ASSERT_TRUE(crowd->addOutfit(outfits.back())) << i;
+        ASSERT_TRUE(crowd->getOutfits().add(outfits.back())) << i;
     }
-    EXPECT_FALSE(crowd->addOutfit(nullptr));
-    EXPECT_FALSE(crowd->addOutfit(outfits.front())) << "a second time";
+    EXPECT_FALSE(crowd->getOutfits().add(nullptr));
+    EXPECT_FALSE(crowd->getOutfits().add(outfits.front())) << "a second time";
     const osg::ref_ptr<Outfit> further = new Outfit;
-    EXPECT_FALSE(crowd->addOutfit(further));
+    EXPECT_FALSE(crowd->getOutfits().add(further));
     EXPECT_FALSE(crowd->setOutfit(instance, further)) << "it is not the crowd's";
     EXPECT_TRUE(hasError(crowd->setOutfit(instance, outfits.back()), ""));
     EXPECT_EQ(crowd->getOutfit(instance), outfits.back());
 
-    EXPECT_TRUE(crowd->removeOutfit(outfits.back()));
-    EXPECT_FALSE(crowd->removeOutfit(outfits.back()));
+    EXPECT_TRUE(crowd->getOutfits().remove(outfits.back()));
+    EXPECT_FALSE(crowd->getOutfits().remove(outfits.back()));
     EXPECT_EQ(crowd->getOutfit(instance), nullptr);
-    EXPECT_TRUE(hasError(crowd->addOutfit(further), ""));
+    EXPECT_TRUE(hasError(crowd->getOutfits().add(further), ""));
 }
 
 TEST(OutfitsTest, instancesKeepThemWhenOthersAreRemovedAndInCopies)
@@ -92,8 +92,8 @@ TEST(OutfitsTest, instancesKeepThemWhenOthersAreRemovedAndInCopies)
     const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeDressedCharacter());
     const std::vector<AnimatedCrowd::Instance> instances = addInstances(*crowd, std::vector<osg::Matrixd>(3), still());
     const osg::ref_ptr<Outfit> one = new Outfit, two = new Outfit;
-    EXPECT_TRUE(hasError(crowd->addOutfit(one), ""));
-    EXPECT_TRUE(hasError(crowd->addOutfit(two), ""));
+    EXPECT_TRUE(hasError(crowd->getOutfits().add(one), ""));
+    EXPECT_TRUE(hasError(crowd->getOutfits().add(two), ""));
     EXPECT_TRUE(hasError(crowd->setOutfit(instances[1], one), ""));
     EXPECT_TRUE(hasError(crowd->setOutfit(instances[2], two), ""));
     const osg::ref_ptr<osg::Referenced> person = new osg::Image;
@@ -108,7 +108,7 @@ TEST(OutfitsTest, instancesKeepThemWhenOthersAreRemovedAndInCopies)
         EXPECT_EQ(each->getInstanceData(instances[1]), nullptr);
         EXPECT_EQ(each->getInstanceData(instances[2]), person);
     }
-    EXPECT_TRUE(hasError(crowd->replaceOutfit(one, new Outfit), ""));
+    EXPECT_TRUE(hasError(crowd->getOutfits().replace(one, new Outfit), ""));
     EXPECT_NE(crowd->getOutfit(instances[1]), one);
     EXPECT_EQ(copy->getOutfit(instances[1]), one) << "copies do not follow";
     EXPECT_FALSE(crowd->setInstanceData(instances[0], person));
@@ -145,7 +145,7 @@ TEST(OutfitsTest, hitsAndStatisticsMeetShownPartsAlone)
     EXPECT_EQ(hitsAt(*crowd, 1.0, 0.5), std::set<std::string>{"front"});
     const osg::ref_ptr<Outfit> bare = makeOutfit(
         [](Outfit& outfit) { outfit.setVisible("front", false), outfit.addProp("side", makeBox()); }, "bare");
-    EXPECT_TRUE(hasError(crowd->addOutfit(bare), ""));
+    EXPECT_TRUE(hasError(crowd->getOutfits().add(bare), ""));
     EXPECT_TRUE(hasError(crowd->setOutfit(instances[1], bare), ""));
     EXPECT_EQ(hitsAt(*crowd, -3.0, 0.5), std::set<std::string>{"front"});
     EXPECT_EQ(hitsAt(*crowd, 1.0, 0.5), std::set<std::string>());
@@ -155,7 +155,7 @@ TEST(OutfitsTest, hitsAndStatisticsMeetShownPartsAlone)
     crowd->update(0.0);
     EXPECT_EQ(hitsAt(*crowd, 2.6, 0.1), std::set<std::string>{"box of bare"});
     bare->setVisible("side", true);
-    EXPECT_TRUE(hasError(crowd->replaceOutfit(bare, bare), ""));
+    EXPECT_TRUE(hasError(crowd->getOutfits().replace(bare, bare), ""));
     EXPECT_EQ(hitsAt(*crowd, 2.6, 0.1), (std::set<std::string>{"side of bare", "box of bare"}));
     EXPECT_EQ(hitsAt(*crowd, -1.4, 0.1), std::set<std::string>()) << "without an outfit it is hidden";
 }
@@ -165,8 +165,8 @@ TEST(OutfitsTest, boundsContainProps)
     const osg::ref_ptr<AnimatedCrowd> crowd = makeCrowd(*makeDressedCharacter());
     const osg::BoundingSphere before = crowd->getBound();
     EXPECT_TRUE(
-        hasError(crowd->addOutfit(makeOutfit([](Outfit& outfit)
-                                             { outfit.addProp("tip", makeBox(), osg::Matrixd::translate(0, 0, 9)); })),
+        hasError(crowd->getOutfits().add(makeOutfit(
+                     [](Outfit& outfit) { outfit.addProp("tip", makeBox(), osg::Matrixd::translate(0, 0, 9)); })),
                  ""));
     EXPECT_TRUE(crowd->getBound().contains(osg::Vec3(0, 0, 9.25f)));
     EXPECT_FALSE(before.contains(osg::Vec3(0, 0, 9.25f)));

@@ -16,6 +16,7 @@
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/GroundFeet.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
+#include <osgGpuAnimation/nodes/Outfit.h>
 #include <osgGpuAnimation/nodes/PickedJoint.h>
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
 #include <osgGpuAnimation/nodes/SpringBones.h>
@@ -26,9 +27,11 @@
 #include <osg/Geometry>
 #include <osg/Group>
 #include <osg/MatrixTransform>
+#include <osg/ShapeDrawable>
 #include <osgDB/FileUtils>
 #include <osgDB/ReadFile>
 #include <osgDB/Registry>
+#include <osgDB/WriteFile>
 #include <osgUtil/IntersectionVisitor>
 #include <osgUtil/LineSegmentIntersector>
 #include <osgViewer/Viewer>
@@ -497,6 +500,42 @@ TEST_F(ReadmeDirectingTest, crowds)
     EXPECT_TRUE(hand);
     osg::Vec4 tint = crowd->getTint(leader);
     EXPECT_EQ(tint, osg::Vec4(1, 1, 1, 1));
+}
+
+TEST_F(ReadmeTest, outfits)
+{
+    const osg::ref_ptr<osg::Node> people = osgDB::readRefNodeFile(OSGGPUANIMATION_SCENES "/People.glb");
+    ASSERT_TRUE(people);
+    ASSERT_TRUE(osgDB::writeNodeFile(*new osg::ShapeDrawable(new osg::Sphere(osg::Vec3(), 0.2f)), "helmet.glb"));
+    std::filesystem::copy_file(OSGGPUANIMATION_SCENES "/Serpent.png", "lion.png");
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*findCharacter(*people));
+    const AnimationController controller(crowd->getSharedAnimationSet());
+    const AnimatedCrowd::Instance fox = crowd->add(osg::Matrixd(), controller).value();
+    const osg::ref_ptr<osg::Referenced> person = new osg::Image;
+
+    osg::ref_ptr<Outfit> guard = new Outfit;
+    guard->setVisible("Hood", false);
+    guard->setColor("Coat", osg::Vec4(0.5, 0.2, 0.2, 1));
+    guard->setVariant("unlit");
+    guard->setPicture("Pack", osgDB::readRefImageFile("lion.png"));
+    guard->addProp("Head", osgDB::readRefNodeFile("helmet.glb"), osg::Matrix::translate(0, 0.1, 0));
+    succeeded(crowd->getOutfits().add(guard));
+    succeeded(crowd->setOutfit(fox, guard));
+    EXPECT_EQ(crowd->getOutfit(fox), guard);
+
+    succeeded(crowd->setInstanceData(fox, person));
+    const osg::ref_ptr<osgUtil::LineSegmentIntersector> ray =
+        new osgUtil::LineSegmentIntersector(osg::Vec3d(0, -10, 0.7), osg::Vec3d(0, 10, 0.7));
+    osgUtil::IntersectionVisitor visitor(ray);
+    crowd->accept(visitor);
+    ASSERT_TRUE(ray->containsIntersections());
+    const auto intersection = ray->getFirstIntersection();
+    bool isReported = false;
+    const auto report = [&](osg::Referenced* data, const Outfit* outfit)
+    { isReported = data == person && outfit == guard; };
+    auto hit = instanceOf(intersection);
+    if (hit) report(crowd->getInstanceData(*hit), crowd->getOutfit(*hit));
+    EXPECT_TRUE(isReported);
 }
 
 /// The angle between the line of sight of the head, along its axis, and the line to a place: radians.

@@ -21,17 +21,17 @@ TEST(StoredOutfitsTest, comeBackWithTheirInstances)
     guard->setPicture("cloth", makePicture(10, 20, 30));
     guard->addProp("tip", makeBox(), osg::Matrixd::translate(0.1, 0.2, 1.0 / 3.0));
     for (const osg::ref_ptr<Outfit>& outfit : {removed, plain, guard})
-        ASSERT_TRUE(hasError(crowd->addOutfit(outfit), ""));
+        ASSERT_TRUE(hasError(crowd->getOutfits().add(outfit), ""));
     const std::vector<AnimatedCrowd::Instance> instances = addInstances(*crowd, std::vector<osg::Matrixd>(3), still());
     ASSERT_TRUE(hasError(crowd->setOutfit(instances[0], guard), ""));
     ASSERT_TRUE(hasError(crowd->setOutfit(instances[2], plain), ""));
-    ASSERT_TRUE(crowd->removeOutfit(removed)); // leaves a gap in the numbers
+    ASSERT_TRUE(crowd->getOutfits().remove(removed)); // leaves a gap in the numbers
     for (const char* format : storedFormats)
     {
         const osg::ref_ptr<osg::Node> read = files.throughFile(*crowd, format);
         const auto* back = dynamic_cast<AnimatedCrowd*>(read.get());
         ASSERT_NE(back, nullptr) << format;
-        const std::vector<osg::ref_ptr<Outfit>> outfits = back->getOutfits();
+        const std::vector<osg::ref_ptr<Outfit>> outfits = back->getOutfits().getList();
         ASSERT_EQ(outfits.size(), 2u) << format;
         const Outfit& again = *outfits[1];
         EXPECT_EQ(again.getName(), "guard");

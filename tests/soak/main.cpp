@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Usage: soak [--seconds N] [--seed S] [--field COUNT] FILE
+// Usage: soak [--seconds N] [--seed S] [--field COUNT] [--outfits OUTFITS.json] FILE
 // With the file's character, clones, removes, changes clips, moves the cameras, changes the window's size and the
 // threading model: at random, but the same for the same seed. A field is a crowd of that many instances with levels of
-// detail, of which every frame replaces, moves and redirects 1 %. Prints GL errors and the growth of allocated memory
+// detail, of which every frame replaces, moves and redirects 1 %, and dresses 1 % in another outfit; now and then an
+// outfit changes. Prints GL errors and the growth of allocated memory
 // since the first minute, measured with the window closed and the scene empty but for the field. Exit status 0: no GL
 // error, and at most 2 % growth.
 #include "support/ThreadingModels.h"
@@ -10,6 +11,7 @@
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/OutfitsFile.h>
 
 #include <osg/ArgumentParser>
 #include <osgDB/ReadFile>
@@ -50,8 +52,9 @@ bool oneOf(int count, std::mt19937& random)
 class SoakScene
 {
 public:
-    /// model: contains a character; it is not changed.
-    SoakScene(osg::ref_ptr<osg::Node> model, std::size_t fieldCount, std::mt19937& random)
+    /// model: contains a character; it is not changed. outfits: of the field.
+    SoakScene(osg::ref_ptr<osg::Node> model, std::size_t fieldCount, const std::vector<OutfitShare>& outfits,
+              std::mt19937& random)
         : _random(random), _model(model), _crowd(new AnimatedCrowd(*findCharacter(*model))),
           _field(new AnimatedCrowd(*findCharacter(*model)))
     {
@@ -60,6 +63,13 @@ public:
         const double density = std::max(1.0, static_cast<double>(fieldCount) / maxInstances);
         _reach = 15.0 * _model->getBound().radius() * std::sqrt(density);
         static_cast<void>(_field->getMeshes().setPixelError(0.5f)); // in range
+        for (const OutfitShare& each : outfits)
+        {
+            if (const Result<void> added = _field->getOutfits().add(each.outfit); !added)
+                std::cerr << added.error().message << std::endl;
+            else
+                _outfits.push_back(each.outfit);
+        }
         while (_fieldInstances.size() < fieldCount)
             _fieldInstances.push_back(addTo(*_field));
     }
@@ -139,7 +149,26 @@ private:
             replaced = addTo(*_field);
             static_cast<void>(_field->setPlacement(anyOf(_fieldInstances, _random), randomPlace())); // it is there
             changeClip(*_field->getController(anyOf(_fieldInstances, _random)));
+            dress(anyOf(_fieldInstances, _random));
         }
+        if (!_outfits.empty() && oneOf(200, _random)) changeOutfit(anyOf(_outfits, _random));
+    }
+
+    void dress(AnimatedCrowd::Instance instance)
+    {
+        if (_outfits.empty()) return;
+        static_cast<void>(_field->setOutfit(instance, anyOf(_outfits, _random))); // both are there
+    }
+
+    /// Another object with other colours.
+    void changeOutfit(osg::ref_ptr<Outfit>& outfit)
+    {
+        const osg::ref_ptr<Outfit> changed = osg::clone(outfit.get(), osg::CopyOp::SHALLOW_COPY);
+        std::uniform_real_distribution<float> channel(0.0f, 1.0f);
+        for (const auto& [material, color] : outfit->getColors())
+            changed->setColor(material, osg::Vec4(channel(_random), color.g(), color.b(), 1.0f));
+        static_cast<void>(_field->getOutfits().replace(outfit, changed)); // it fits as the first
+        outfit = changed;
     }
 
     AnimatedCrowd::Instance addTo(AnimatedCrowd& crowd)
@@ -156,6 +185,7 @@ private:
     std::vector<AnimatedCrowd::Instance> _instances;
     osg::ref_ptr<AnimatedCrowd> _field;
     std::vector<AnimatedCrowd::Instance> _fieldInstances;
+    std::vector<osg::ref_ptr<Outfit>> _outfits;
     double _reach; ///< of places along x and y
 };
 
@@ -265,6 +295,7 @@ struct Arguments
     double seconds = 600.0;
     unsigned int seed = 1;
     unsigned int field = 0; ///< instances
+    std::string outfits;    ///< of the field; empty: none
     std::string file;
 };
 
@@ -274,6 +305,7 @@ bool parse(int count, char** words, Arguments& arguments)
     parser.read("--seconds", arguments.seconds);
     parser.read("--seed", arguments.seed);
     parser.read("--field", arguments.field);
+    parser.read("--outfits", arguments.outfits);
     if (parser.argc() == 2) arguments.file = parser[1];
     return !arguments.file.empty() && arguments.seconds > 0.0 && arguments.field <= AnimatedCrowd::maxInstances;
 }
@@ -297,7 +329,18 @@ double mean(const std::vector<std::size_t>& values)
 int soak(const Arguments& arguments, osg::ref_ptr<osg::Node> model)
 {
     std::mt19937 random(arguments.seed);
-    SoakScene scene(model, arguments.field, random);
+    std::vector<OutfitShare> outfits;
+    if (!arguments.outfits.empty())
+    {
+        Result<std::vector<OutfitShare>> read = readOutfitsFile(arguments.outfits);
+        if (!read)
+        {
+            std::cerr << read.error().message << std::endl;
+            return 2;
+        }
+        outfits = std::move(read).value();
+    }
+    SoakScene scene(model, arguments.field, outfits, random);
     const unsigned int framesOfAWindow = arguments.field > 10000 ? 20 : 200; // a field's take long
     SoakViewer viewer(*scene.root, random);
     if (!viewer.open()) return 1;
@@ -337,7 +380,7 @@ int main(int count, char** words)
     Arguments arguments;
     if (!parse(count, words, arguments))
     {
-        std::cerr << "Usage: soak [--seconds N] [--seed S] [--field COUNT] FILE" << std::endl;
+        std::cerr << "Usage: soak [--seconds N] [--seed S] [--field COUNT] [--outfits OUTFITS.json] FILE" << std::endl;
         return 2;
     }
     const osg::ref_ptr<osg::Node> model = osgDB::readRefNodeFile(arguments.file);

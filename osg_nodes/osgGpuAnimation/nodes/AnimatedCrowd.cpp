@@ -5,20 +5,17 @@
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/animation/StateMachine.h>
 #include <osgGpuAnimation/frame/crowd/CrowdBatches.h>
+#include <osgGpuAnimation/frame/crowd/CrowdCull.h>
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/frame/crowd/InstanceVisits.h>
 #include <osgGpuAnimation/frame/crowd/SharedPoses.h>
-#include <osgGpuAnimation/frame/stage/LodSelection.h>
-#include <osgGpuAnimation/frame/stage/PoseStage.h>
-#include <osgGpuAnimation/looks/shading/ViewLights.h>
 #include <osgGpuAnimation/mesh/geometry/MaterialVariants.h>
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/callbacks/WorldTargets.h>
 #include <osgGpuAnimation/nodes/detail/StillParts.h>
-#include <osgGpuAnimation/nodes/Outfit.h>
 #include <osgGpuAnimation/nodes/properties/AnimatedProperties.h>
-#include <osgGpuAnimation/nodes/properties/CrowdOutfits.h>
+#include <osgGpuAnimation/nodes/properties/OutfitMeshes.h>
 #include <osgGpuAnimation/scene/OsgMatrix.h>
 #include <osgGpuAnimation/scene/traversal/CullScopes.h>
 #include <osgGpuAnimation/scene/traversal/MeshVisits.h>
@@ -28,8 +25,6 @@
 #include <osgUtil/Statistics>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace osgGpuAnimation
 {
@@ -52,7 +47,8 @@ AnimatedCrowd::AnimatedCrowd() : AnimatedCrowd(nullptr, {}) {}
 AnimatedCrowd::AnimatedCrowd(std::shared_ptr<const AnimationSet> set,
                              const std::vector<osg::ref_ptr<SkinnedGeometry>>& meshes)
     : _instances(std::make_unique<CrowdInstances>(std::move(set))), _posed(std::make_unique<PosedInstances>()),
-      _worldTargets(std::make_unique<WorldTargets>()), _meshes(*this, _instances->set())
+      _worldTargets(std::make_unique<WorldTargets>()), _meshes(*this, _instances->set()),
+      _outfits(*this, *_instances, _meshes._outfits, [this] { showOutfits(); })
 {
     // Not STATIC: the Optimizer must not flatten the transforms above into the bind pose.
     setDataVariance(osg::Object::DYNAMIC);
@@ -88,6 +84,7 @@ AnimatedCrowd::AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copy
       _posed(std::make_unique<PosedInstances>()), _fileToNode(other._fileToNode), _origin(other._origin),
       _hasOrigin(other._hasOrigin), _updateTime(other._updateTime),
       _worldTargets(std::make_unique<WorldTargets>(*other._worldTargets)), _meshes(*this, _instances->set()),
+      _outfits(*this, *_instances, _meshes._outfits, [this] { showOutfits(); }),
       _sharedPoses(other._sharedPoses ? std::make_unique<SharedPoses>(*other._sharedPoses) : nullptr)
 {
     _meshes.copySettings(other._meshes);
@@ -180,59 +177,22 @@ osg::Vec4 AnimatedCrowd::getTint(Instance instance) const
     return index == CrowdInstances::none ? osg::Vec4(1, 1, 1, 1) : toColor(_instances->tint(index));
 }
 
-/// After a change of the outfits.
 void AnimatedCrowd::showOutfits()
 {
     if (_meshes._outfits->hasProps()) computeBounds();
     dirtyBound();
 }
 
-Result<void> AnimatedCrowd::addOutfit(Outfit* outfit)
-{
-    if (!_meshes._outfits) _meshes._outfits = std::make_unique<CrowdOutfits>();
-    const Result<void> added = _meshes._outfits->add(*this, getAnimationSet(), outfit);
-    if (added) showOutfits();
-    return added;
-}
-
-Result<void> AnimatedCrowd::replaceOutfit(const Outfit* outfit, Outfit* by)
-{
-    if (!_meshes._outfits) return Error{"the crowd has no such outfit"};
-    const Result<void> replaced = _meshes._outfits->replace(*this, getAnimationSet(), outfit, by);
-    if (replaced) showOutfits();
-    return replaced;
-}
-
-bool AnimatedCrowd::removeOutfit(const Outfit* outfit)
-{
-    const CrowdOutfits::Number number = _meshes._outfits ? _meshes._outfits->numberOf(outfit) : CrowdOutfits::Number(0);
-    if (number == 0) return false;
-    _instances->removeOutfit(number);
-    _meshes._outfits->remove(*this, outfit);
-    showOutfits();
-    return true;
-}
-
-std::vector<osg::ref_ptr<Outfit>> AnimatedCrowd::getOutfits() const
-{
-    return _meshes._outfits ? _meshes._outfits->all() : std::vector<osg::ref_ptr<Outfit>>();
-}
-
 Result<void> AnimatedCrowd::setOutfit(Instance instance, const Outfit* outfit)
 {
     const std::size_t index = _instances->indexOf(instance);
-    if (index == CrowdInstances::none) return CrowdInstances::noInstance();
-    const CrowdOutfits::Number number = _meshes._outfits ? _meshes._outfits->numberOf(outfit) : CrowdOutfits::Number(0);
-    if (outfit && number == 0) return Error{"the crowd has no such outfit; addOutfit() adds it"};
-    _instances->setOutfit(index, number);
-    return {};
+    return index == CrowdInstances::none ? CrowdInstances::noInstance() : _outfits.wear(index, outfit);
 }
 
 const Outfit* AnimatedCrowd::getOutfit(Instance instance) const
 {
     const std::size_t index = _instances->indexOf(instance);
-    return _meshes._outfits && index != CrowdInstances::none ? _meshes._outfits->outfit(_instances->outfit(index))
-                                                             : nullptr;
+    return index == CrowdInstances::none ? nullptr : _outfits.wornBy(index);
 }
 
 Result<void> AnimatedCrowd::setInstanceData(Instance instance, osg::Referenced* data)
@@ -342,19 +302,8 @@ osg::Matrixd AnimatedCrowd::takeRootMotion(Instance instance)
 
 Result<void> AnimatedCrowd::setOrigin(const osg::Vec3d& origin)
 {
-    if (!std::isfinite(origin.length())) return Error{"the origin is not finite"};
-    constexpr double maxDistance = std::numeric_limits<float>::max();
-    for (std::size_t index = 0; index < getNumInstances(); ++index)
-        if (!((_instances->position(index) - origin).length() < maxDistance))
-            return Error{"instance " + std::to_string(index) + " is too far from the origin for a float"};
-    for (std::size_t index = 0; index < getNumInstances(); ++index)
-    {
-        AffineMatrix root = _instances->rootMatrix(index);
-        const osg::Vec3d position = _instances->position(index);
-        for (int row = 0; row < 3; ++row)
-            root.rows[static_cast<std::size_t>(row)].w = static_cast<float>(position[row] - origin[row]);
-        _instances->move(index, root, position);
-    }
+    const Result<void> moved = _instances->setOrigin(origin);
+    if (!moved) return moved;
     _origin = origin;
     _hasOrigin = true;
     dirtyBound();
@@ -411,63 +360,20 @@ void AnimatedCrowd::accept(osg::NodeVisitor& visitor)
 void AnimatedCrowd::traverse(osg::NodeVisitor& visitor)
 {
     if (const std::optional<double> time = updateTimeOf(visitor); time && time != _updateTime) update(*time);
+    const OutfitMeshes* const outfits = _meshes._outfits.get();
+    const auto nodesOfOutfits = [&] { return outfits ? outfits->nodesOfOutfits() : NodesOfOutfits(); };
     if (osgUtil::CullVisitor* cullVisitor = visitor.asCullVisitor())
-        cull(*cullVisitor);
+        cullCrowd({*this, *this, *_instances, _meshes.drawn(), _meshes.getPixelError(), _meshes._levels,
+                   _sharedPoses.get(), outfits ? &outfits->lists() : nullptr},
+                  *cullVisitor);
     else if (dynamic_cast<osgUtil::IntersectionVisitor*>(&visitor) || isFileWriter(visitor))
-        visitInstances(*this, *_instances, _meshes._outfits ? _meshes._outfits->nodesOfOutfits() : NodesOfOutfits(),
-                       visitor);
+        visitInstances(*this, *_instances, nodesOfOutfits(), visitor);
     else if (dynamic_cast<osgUtil::StatsVisitor*>(&visitor))
-        visitMeshesPerInstance(*this, *_instances,
-                               _meshes._outfits ? _meshes._outfits->nodesOfOutfits() : NodesOfOutfits(), visitor);
+        visitMeshesPerInstance(*this, *_instances, nodesOfOutfits(), visitor);
     else if (const Box now = computesBounds(visitor) ? _instances->bounds() : Box(); !now.empty())
         traverseWithBounds(*this, toOsg(now), visitor);
     else if (!keepFlattenedPlace(*this, visitor))
         osg::Transform::traverse(visitor);
-}
-
-void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
-{
-    const DepthPass pass(visitor);
-    const ViewLightsScope lights(visitor);
-    CrowdView view(visitor);
-    static thread_local SeenMembers seen; // keeps its storage from cull to cull
-    _instances->findSeen(isCullingActive() ? view.planes() : std::vector<glm::vec4>(), seen);
-    std::vector<DrawState> draws;
-    LodRange lods;
-    if (seen.size() > 0 && getAnimationSet().paletteSize() > 0)
-    {
-        view.look(seen);
-        if (_meshes.getPixelError() > 0.0f)
-            lods = LodRange(_meshes.drawn(), getAnimationSet(), _meshes._levels, _meshes.lists());
-        const LodScale scale(visitor, PoseStage::lodView(visitor), _meshes.getPixelError(), lods);
-        const OutfitLists* const lists = _meshes._outfits ? &_meshes._outfits->lists() : nullptr;
-        draws = submitSeen(PoseStage::frame(visitor), *_instances, scale, _sharedPoses.get(), lists, seen);
-    }
-    for (const DrawState& draw : draws)
-    {
-        visitor.pushStateSet(draw.stateSet);
-        lods.forEachMeshAt(draw.binding->getLevel(), _meshes.drawn(),
-                           [&](const SkinnedGeometry& mesh, const SkinnedGeometry& part)
-                           {
-                               if (!_meshes._outfits || _meshes._outfits->listOf(part) == draw.list)
-                                   view.draw(const_cast<SkinnedGeometry&>(mesh), *draw.binding);
-                           });
-        visitor.popStateSet();
-    }
-    const UnculledScope unculled(visitor);
-    const MeshDrawScope scope(*this,
-                              [&](SkinnedGeometry& mesh)
-                              {
-                                  for (const DrawState& draw : draws)
-                                  {
-                                      if (draw.list != OutfitLists::all) continue;
-                                      visitor.pushStateSet(draw.stateSet);
-                                      view.draw(mesh, *draw.binding);
-                                      visitor.popStateSet();
-                                  }
-                              });
-    for (const osg::ref_ptr<osg::Node>& child : _children)
-        if (!dynamic_cast<const SkinnedGeometry*>(child.get())) child->accept(visitor);
 }
 
 void AnimatedCrowd::prepareSharedPoses()

@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/mesh/PosedMeshSource.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/CharacterMeshes.h>
+#include <osgGpuAnimation/nodes/CrowdOutfits.h>
 #include <osgGpuAnimation/nodes/NodeConstraint.h>
 
 #include <osg/Transform>
@@ -22,7 +23,6 @@ namespace osgGpuAnimation
 
 class AnimatedCharacter;
 class CrowdInstances;
-class Outfit;
 class PosedInstances;
 class SharedPoses;
 class StateGraph;
@@ -107,17 +107,9 @@ public:
     Result<osg::Matrixd> jointToCrowd(Instance instance, std::size_t joint) const;
     Result<osg::Matrixd> jointToCrowd(Instance instance, const std::string& joint) const; ///< The same by name.
 
-    /// Outfits: instances that show other parts, colours, variants, pictures or props, in the draws of one crowd. See
-    /// Outfit and the guide. Between frames or in the update traversal, not while the crowd is culled.
-    /// Errors, which change nothing: outfit is null or was added before; it names a part, material, variant or joint
-    /// that the crowd lacks, a colour beyond [0, 1] or an empty picture; the crowd has 256 outfits.
-    Result<void> addOutfit(Outfit* outfit);
-    /// The instances of the outfit get another one, or, with by == outfit, what has changed in it. Errors: those of
-    /// addOutfit(); the crowd has no such outfit.
-    Result<void> replaceOutfit(const Outfit* outfit, Outfit* by);
-    /// Its instances show what the crowd shows. False: there is no such outfit.
-    bool removeOutfit(const Outfit* outfit);
-    std::vector<osg::ref_ptr<Outfit>> getOutfits() const; ///< in the order of their numbers
+    /// Instances of an outfit show other parts, colours, variants, pictures or props, in the draws of one crowd.
+    CrowdOutfits& getOutfits() { return _outfits; }
+    const CrowdOutfits& getOutfits() const { return _outfits; } ///< the same, read only
     /// outfit: null: none. Errors: no such instance; no such outfit.
     Result<void> setOutfit(Instance instance, const Outfit* outfit);
     const Outfit* getOutfit(Instance instance) const; ///< null: none, or no such instance
@@ -179,13 +171,12 @@ private:
     friend struct CrowdDetail;
 
     void computeBounds();
+    void showOutfits();
     osg::ref_ptr<osg::Geometry> getPosedMesh(const SkinnedGeometry& mesh, bool withNormals) const override;
     osg::ref_ptr<osg::Geometry> posedMesh(std::size_t index, const SkinnedGeometry& mesh, bool withNormals) const;
     void takeWorldTargets();
     void prepareSharedPoses();
     osg::Matrixd fileToSpace(std::size_t index) const;
-    void cull(osgUtil::CullVisitor& visitor);
-    void showOutfits();
 
     std::unique_ptr<CrowdInstances> _instances; ///< never null
     std::unique_ptr<PosedInstances> _posed;     ///< copies do not share it
@@ -195,6 +186,7 @@ private:
     std::optional<double> _updateTime;           ///< seconds of simulation time
     std::unique_ptr<WorldTargets> _worldTargets; ///< never null
     CharacterMeshes _meshes;
+    CrowdOutfits _outfits;
     std::unique_ptr<SharedPoses> _sharedPoses; ///< null: no pixel error yet
 };
 

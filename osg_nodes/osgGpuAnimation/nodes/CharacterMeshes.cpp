@@ -8,7 +8,7 @@
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/mesh/lod/LevelsTask.h>
 #include <osgGpuAnimation/nodes/properties/AnimatedProperties.h>
-#include <osgGpuAnimation/nodes/properties/CrowdOutfits.h>
+#include <osgGpuAnimation/nodes/properties/OutfitMeshes.h>
 
 #include <algorithm>
 
@@ -31,7 +31,7 @@ void CharacterMeshes::copySettings(const CharacterMeshes& other)
     _task = other._task;
     if (other._outfits)
     {
-        _outfits = std::make_unique<CrowdOutfits>(*other._outfits);
+        _outfits = std::make_unique<OutfitMeshes>(*other._outfits);
         _outfits->update(_node);
     }
     if (_properties) _properties->bind(_node); // the children are the other's, too
@@ -121,7 +121,7 @@ const osg::Group& CharacterMeshes::drawn() const
 const std::vector<std::size_t>& CharacterMeshes::lists() const
 {
     static const std::vector<std::size_t> all;
-    return _outfits ? _outfits->listsOfMeshes() : all;
+    return _outfits ? _outfits->lists().ofMeshes : all;
 }
 
 Result<void> CharacterMeshes::setPixelError(float pixels)

@@ -15,7 +15,7 @@ namespace osgGpuAnimation
 class AnimatedProperties;
 class AnimationController;
 class CharacterLevels;
-class CrowdOutfits;
+class OutfitMeshes;
 class LevelsTask;
 class VariantMeshes;
 
@@ -102,7 +102,7 @@ private:
     std::unique_ptr<AnimatedProperties> _properties; ///< null: the set has none, or a crowd
     std::string _variant;
     float _pixelError = 0.0f;                       ///< pixels
-    std::unique_ptr<CrowdOutfits> _outfits;         ///< of a crowd; null: there were none
+    std::unique_ptr<OutfitMeshes> _outfits;         ///< of a crowd; null: there were none
     std::shared_ptr<const CharacterLevels> _levels; ///< of the crowd as a whole; null: not made
     std::shared_ptr<LevelsTask> _task;              ///< null: nothing is missing
 };

@@ -21,14 +21,14 @@ namespace osgGpuAnimation
 ///     guard->setVisible("Hood", false);                                     // a part, by the name of its node
 ///     guard->setColor("Coat", osg::Vec4(0.5, 0.2, 0.2, 1));                 // a material; the skin keeps its colour
 ///     guard->addProp("Head", osgDB::readRefNodeFile("helmet.glb"));
-///     if (auto added = crowd->addOutfit(guard); !added) std::cerr << added.error().message << "\n";
+///     if (auto added = crowd->getOutfits().add(guard); !added) std::cerr << added.error().message << "\n";
 ///     crowd->setOutfit(instance, guard);
 ///
 /// Names of parts are those of CharacterMeshes::find(), names of materials those of StateSets. Garments are parts: let
 /// the character wear() them before the crowd is made of it.
 ///
-/// AnimatedCrowd::addOutfit() checks an outfit against the crowd. Pass it to AnimatedCrowd::replaceOutfit() after later
-/// changes. Several crowds may have the same outfit. OSG's own formats keep outfits with their crowds.
+/// CrowdOutfits::add() checks an outfit against the crowd. Pass it to CrowdOutfits::replace() after later changes.
+/// Several crowds may have the same outfit. OSG's own formats keep outfits with their crowds.
 class Outfit : public osg::Object
 {
 public:

@@ -3,14 +3,13 @@
 
 #include <osgGpuAnimation/nodes/files/JsonText.h>
 
-#include <osgDB/FileNameUtils>
-#include <osgDB/ReadFile>
-
 #include <cmath>
 #include <filesystem>
 
 namespace osgGpuAnimation
 {
+
+using namespace json;
 
 namespace
 {
@@ -40,18 +39,34 @@ std::string pathOf(const Json& json, const std::string& where, const std::string
     for (const std::filesystem::path& part : path)
         isBelow = isBelow && part != "..";
     if (!isBelow) throw JsonFault{where + ": \"" + path.string() + "\" is not in the folder of the file"};
-    return osgDB::concatPaths(folder, path.string());
+    return (std::filesystem::path(folder) / path).string();
+}
+
+/// Numbers of an array of three.
+osg::Vec3d toVector(const Json& json, const std::string& where, const char* expected)
+{
+    bool isVector = json.is_array() && json.size() == 3;
+    for (const Json& number : json)
+        isVector = isVector && number.is_number();
+    expect(isVector, where, expected, json);
+    return {json[0].get<double>(), json[1].get<double>(), json[2].get<double>()};
+}
+
+osg::Vec3d toSize(const Json& json, const std::string& where)
+{
+    const osg::Vec3d size = json.is_number() ? osg::Vec3d(1, 1, 1) * json.get<double>()
+                                             : toVector(json, where, "a number or an array of three numbers");
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(size[axis] > 0.0 && std::isfinite(size[axis])))
+            throw JsonFault{where + ": expected above 0, found " + std::to_string(size[axis])};
+    return size;
 }
 
 osg::Matrixd toOffset(const Json& prop, const std::string& where)
 {
     const auto offset = prop.find("offset");
     if (offset == prop.end()) return {};
-    bool isVector = offset->is_array() && offset->size() == 3;
-    for (const Json& number : *offset)
-        isVector = isVector && number.is_number();
-    expect(isVector, where + ".offset", "an array of three numbers", *offset);
-    return osg::Matrixd::translate((*offset)[0].get<double>(), (*offset)[1].get<double>(), (*offset)[2].get<double>());
+    return osg::Matrixd::translate(toVector(*offset, where + ".offset", "an array of three numbers"));
 }
 
 /// The member, which is an object or an array as `isOf` says; an empty value if there is none.
@@ -69,7 +84,7 @@ const Json& memberOf(const Json& object, const char* name, const std::string& wh
 class OutfitReader
 {
 public:
-    explicit OutfitReader(const std::string& folder) : _folder(folder) {}
+    OutfitReader(const std::string& folder, const OutfitReaders& readers) : _folder(folder), _readers(readers) {}
 
     std::vector<OutfitShare> read(const Json& json)
     {
@@ -97,11 +112,9 @@ private:
         made.outfit->setName(name);
         made.outfit->setVariant(variant);
         readNumber(json, "share", where, made.share);
-        readNumber(json, "size", where, made.size);
+        if (json.contains("size")) made.size = toSize(json["size"], where + ".size");
         if (!(made.share >= 0.0 && std::isfinite(made.share)))
             throw JsonFault{where + ".share: expected at least 0, found " + std::to_string(made.share)};
-        if (!(made.size > 0.0 && std::isfinite(made.size)))
-            throw JsonFault{where + ".size: expected above 0, found " + std::to_string(made.size)};
         for (const bool isVisible : {false, true})
             if (const char* const member = isVisible ? "show" : "hide"; json.contains(member))
                 for (const std::string& part : toTexts(json[member], where + "." + member))
@@ -120,8 +133,8 @@ private:
     {
         const std::string path = pathOf(json, where, _folder);
         osg::ref_ptr<osg::Image>& picture = _pictures[path];
-        if (!picture) picture = osgDB::readRefImageFile(path);
-        if (!picture) throw JsonFault{where + ": " + path + " is no picture that OSG can read"};
+        if (!picture && _readers.picture) picture = _readers.picture(path);
+        if (!picture) throw JsonFault{where + ": " + path + " is no picture that can be read"};
         return picture;
     }
 
@@ -134,23 +147,24 @@ private:
         readText(json, "joint", where, joint);
         const std::string path = pathOf(json["file"], where + ".file", _folder);
         osg::ref_ptr<osg::Node>& node = _nodes[path];
-        if (!node) node = osgDB::readRefNodeFile(path);
-        if (!node) throw JsonFault{where + ".file: " + path + " is no model that OSG can read"};
+        if (!node && _readers.model) node = _readers.model(path);
+        if (!node) throw JsonFault{where + ".file: " + path + " is no model that can be read"};
         outfit.addProp(joint, node, toOffset(json, where));
     }
 
     const std::string _folder;
+    const OutfitReaders& _readers;
     std::map<std::string, osg::ref_ptr<osg::Image>> _pictures; ///< by path: outfits share them
     std::map<std::string, osg::ref_ptr<osg::Node>> _nodes;
 };
 
 } // namespace
 
-Result<std::vector<OutfitShare>> readOutfitsFile(const std::string& file)
+Result<std::vector<OutfitShare>> readOutfitsFile(const std::string& file, const OutfitReaders& readers)
 {
     const Result<std::string> text = readJsonFile(file);
     if (!text) return text.error();
-    OutfitReader reader(osgDB::getFilePath(file));
+    OutfitReader reader(std::filesystem::path(file).parent_path().string(), readers);
     std::vector<OutfitShare> outfits;
     const Result<void> read = readJson(text.value(), [&](const Json& json) { outfits = reader.read(json); });
     if (!read) return Error{file + ": " + read.error().message};

@@ -4,6 +4,9 @@
 #include <osgGpuAnimation/math/Result.h>
 #include <osgGpuAnimation/nodes/Outfit.h>
 
+#include <osg/Vec3d>
+
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,11 +17,19 @@ namespace osgGpuAnimation
 struct OutfitShare
 {
     osg::ref_ptr<Outfit> outfit;
-    double share = 1.0; ///< of the instances, relative to those of the other outfits; at least 0
-    double size = 1.0;  ///< the uniform scale of its instances, above 0
+    double share = 1.0;       ///< of the instances, relative to those of the other outfits; at least 0
+    osg::Vec3d size{1, 1, 1}; ///< scales of its instances along X, Y and Z of their own space, each above 0
 };
 
-/// Reads outfits from a short JSON file (people.outfits.json), for AnimatedCrowd::addOutfit():
+/// What reads the pictures and props of an outfits file: the kit itself reads no files of others. Null: a file that
+/// names such is an error.
+struct OutfitReaders
+{
+    std::function<osg::ref_ptr<osg::Image>(const std::string& path)> picture; ///< null result: it cannot be read
+    std::function<osg::ref_ptr<osg::Node>(const std::string& path)> model;    ///< null result: it cannot be read
+};
+
+/// Reads outfits from a short JSON file (people.outfits.json), for CrowdOutfits::add():
 ///
 ///     {
 ///       "outfits": [
@@ -29,14 +40,15 @@ struct OutfitShare
 ///       ]
 ///     }
 ///
-/// hide, show: names of parts, one or an array. colors: by material, "#rrggbb" as displayed. pictures, and the files of
+/// size: a number, or three of width, depth and height: [1.15, 1.1, 0.95] is broader and shorter. hide, show: names of
+/// parts, one or an array. colors: by material, "#rrggbb" as displayed. pictures, and the files of
 /// props: relative to the folder of the file, not above it. offset: of the prop's origin, in the joint's space; default
 /// 0. Missing members have the defaults of Outfit and OutfitShare.
 ///
 /// Errors start with the name of the file and name the member: invalid JSON; more than 64 KiB or 256 nested levels; a
 /// member of a wrong type or an unknown name; a duplicate or missing member; a file that cannot be read; no outfits; a
 /// share below 0, or shares that are all 0; a size that is not above 0. Whether a crowd has the parts and materials is
-/// for addOutfit().
-Result<std::vector<OutfitShare>> readOutfitsFile(const std::string& file);
+/// for CrowdOutfits::add().
+Result<std::vector<OutfitShare>> readOutfitsFile(const std::string& file, const OutfitReaders& readers = {});
 
 } // namespace osgGpuAnimation

@@ -8,6 +8,8 @@
 namespace osgGpuAnimation
 {
 
+using namespace json;
+
 namespace
 {
 

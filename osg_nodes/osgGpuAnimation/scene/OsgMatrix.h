@@ -40,6 +40,12 @@ inline osg::Matrixd toOsg(const AffineMatrix& matrix, const osg::Vec3d& origin)
     return placed;
 }
 
+/// Of the linear part: 0 flattens, below 0 mirrors.
+inline double determinantOf(const osg::Matrixd& matrix)
+{
+    return glm::determinant(glm::dmat3(glm::make_mat4(matrix.ptr())));
+}
+
 /// The affine part of an OSG matrix, rounded to float.
 inline AffineMatrix toAffine(const osg::Matrixd& matrix)
 {
@@ -54,7 +60,7 @@ inline Result<AffineMatrix> toRootMatrix(const osg::Matrixd& matrix, const std::
     if (!root.isFinite()) return Error{name + " is not finite"};
     if (matrix(0, 3) != 0.0 || matrix(1, 3) != 0.0 || matrix(2, 3) != 0.0 || matrix(3, 3) != 1.0)
         return Error{name + " is not affine: its last column is not 0, 0, 0, 1"};
-    const double determinant = glm::determinant(glm::dmat3(glm::make_mat4(matrix.ptr())));
+    const double determinant = determinantOf(matrix);
     if (determinant < 0.0) return Error{name + " mirrors: its determinant is below 0, faces would be seen from inside"};
     if (isInvertible && determinant == 0.0) return Error{name + " flattens: its determinant is 0"};
     return root;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 namespace osgGpuAnimation
 {
@@ -246,6 +247,22 @@ void CrowdInstances::move(std::size_t index, const AffineMatrix& rootMatrix, con
     _positions[index] = position;
     _scales[index] = maxScale(rootMatrix);
     updateMember(index);
+}
+
+Result<void> CrowdInstances::setOrigin(const osg::Vec3d& origin)
+{
+    if (!std::isfinite(origin.length())) return Error{"the origin is not finite"};
+    for (std::size_t index = 0; index < size(); ++index)
+        if (!((_positions[index] - origin).length() < double(std::numeric_limits<float>::max())))
+            return Error{"instance " + std::to_string(index) + " is too far from the origin for a float"};
+    for (std::size_t index = 0; index < size(); ++index)
+    {
+        AffineMatrix root = _rootMatrices[index];
+        for (int row = 0; row < 3; ++row)
+            root.rows[static_cast<std::size_t>(row)].w = static_cast<float>(_positions[index][row] - origin[row]);
+        move(index, root, _positions[index]);
+    }
+    return {};
 }
 
 void CrowdInstances::setTint(std::size_t index, std::uint32_t tint)

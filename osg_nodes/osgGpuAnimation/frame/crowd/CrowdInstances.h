@@ -116,6 +116,9 @@ public:
                std::uint32_t tint);
     void remove(std::size_t index);
     void move(std::size_t index, const AffineMatrix& rootMatrix, const osg::Vec3d& position);
+    /// Makes all root matrices relative to another origin; their exact positions stay. Errors, without a change: the
+    /// origin is not finite; an instance is too far from it for a float.
+    Result<void> setOrigin(const osg::Vec3d& origin);
     void setTint(std::size_t index, std::uint32_t tint);
     /// The number of an outfit, see OutfitLists; 0: none.
     void setOutfit(std::size_t index, std::uint16_t outfit);

@@ -6,10 +6,13 @@
 
 #include <bitset>
 #include <cstddef>
+#include <unordered_map>
 #include <vector>
 
 namespace osgGpuAnimation
 {
+
+class SkinnedGeometry;
 
 /// The instances that each mesh of a crowd with outfits is drawn for. Meshes that the same outfits show share a list:
 /// one draw for a mesh and a level of detail, however many outfits show it.
@@ -28,6 +31,8 @@ struct OutfitLists
 
     static constexpr std::size_t all = 0; ///< the list of all instances
     std::vector<Outfits> lists{Outfits().set()};
+    std::vector<std::size_t> ofMeshes; ///< the list of each mesh, see CharacterLevels::Lists
+    std::unordered_map<const SkinnedGeometry*, std::size_t> listOf; ///< the same by mesh
 
     /// Writes the instances of each run list by list, with the numbers of their outfits, and replaces the runs.
     void arrange(const CrowdInstances& instances, std::vector<PlacedInstances::Drawn>& drawn,

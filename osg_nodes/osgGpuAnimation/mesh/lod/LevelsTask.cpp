@@ -30,6 +30,12 @@ void forEachMeshWithLevels(const osg::Group& meshes, Function function)
                 });
 }
 
+LodLevels::Skinning skinningOf(const SkinnedGeometry& mesh)
+{
+    return [&mesh](const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& out)
+    { mesh.computePositions(palette, out); };
+}
+
 } // namespace
 
 /// What the thread reads and makes. It owns nothing of the application but pictures.
@@ -73,9 +79,7 @@ private:
         CharacterLevels::Sources::Levels levels;
         for (Mesh& mesh : meshes)
         {
-            const auto skin = [&](const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& out)
-            { mesh.copy->computePositions(palette, out); };
-            if (mesh.isMissing && !_stop) mesh.levels->addSteps(*mesh.copy, *_set, skin, &_stop);
+            if (mesh.isMissing && !_stop) mesh.levels->addSteps(*mesh.copy, *_set, skinningOf(*mesh.copy), &_stop);
             levels.push_back(mesh.levels);
         }
         if (sources && !_stop) made = sources->make(*_set, levels, &_stop);

@@ -5,8 +5,6 @@
 
 #include <osg/Group>
 
-#include <cstddef>
-
 namespace osgGpuAnimation
 {
 
@@ -17,16 +15,13 @@ namespace osgGpuAnimation
 /// The character refers to the group of its still parts as a user object, so that clones and stored scenes keep them.
 struct StillParts
 {
-    static constexpr std::size_t maxVertices = 1u << 24; ///< of the still parts of a crowd
-
     /// group: beside the character, in the space that getFileToNode() leads to. joint: it carries a rigid mesh
     /// (AnimationSet::rigidJoints()).
     static void set(AnimatedCharacter& character, osg::Group& group, int joint);
     /// The group that was set; null: none.
     static osg::Group* of(const AnimatedCharacter& character);
-    /// Adds the still parts as children of the crowd, the most detailed level of each osg::LOD among them. A mesh has
-    /// the name of its node, else that of the file's mesh. Copies vertices unless the entry's transform at rest is
-    /// their own. False: there are none. Warns of those that it leaves out.
+    /// Adds the still parts as children of the crowd, see RigidMeshes. False: there are none. Warns of those that it
+    /// leaves out.
     static bool addTo(osg::Group& crowd, const AnimatedCharacter& character);
 };
 

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <set>
 
-namespace osgGpuAnimation
+namespace osgGpuAnimation::json
 {
 
 namespace
@@ -134,4 +134,4 @@ std::vector<std::string> toTexts(const Json& json, const std::string& where)
     return texts;
 }
 
-} // namespace osgGpuAnimation
+} // namespace osgGpuAnimation::json

@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
-namespace osgGpuAnimation
-{
-
 // Short JSON texts of applications: state graphs and outfits. Messages name the member, what was expected and found.
+// exports.map hides these functions: an application may have another nlohmann_json.
+namespace osgGpuAnimation::json
+{
 
 /// Keeps the order of the members.
 using Json = nlohmann::ordered_json;
@@ -74,4 +74,4 @@ void readWord(const Json& object, const char* name, const std::string& where,
     throw JsonFault{where + "." + name + ": \"" + text + "\" is not one of " + known};
 }
 
-} // namespace osgGpuAnimation
+} // namespace osgGpuAnimation::json

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/nodes/properties/CrowdOutfits.h>
+#include <osgGpuAnimation/nodes/properties/OutfitMeshes.h>
 
 #include <osgGpuAnimation/looks/PbrMaterial.h>
 #include <osgGpuAnimation/looks/shading/ShaderPermutations.h>
@@ -106,19 +106,19 @@ std::string quotedList(const std::set<std::string>& names)
 
 } // namespace
 
-CrowdOutfits::Number CrowdOutfits::numberOf(const Outfit* outfit) const
+OutfitMeshes::Number OutfitMeshes::numberOf(const Outfit* outfit) const
 {
     if (!outfit) return 0;
     const auto found = std::find(_outfits.begin(), _outfits.end(), outfit);
     return found == _outfits.end() ? Number(0) : static_cast<Number>(found - _outfits.begin() + 1);
 }
 
-Outfit* CrowdOutfits::outfit(Number number) const
+Outfit* OutfitMeshes::outfit(Number number) const
 {
     return number == 0 || number > _outfits.size() ? nullptr : _outfits[number - 1u].get();
 }
 
-std::vector<osg::ref_ptr<Outfit>> CrowdOutfits::all() const
+std::vector<osg::ref_ptr<Outfit>> OutfitMeshes::all() const
 {
     std::vector<osg::ref_ptr<Outfit>> outfits;
     for (const osg::ref_ptr<Outfit>& outfit : _outfits)
@@ -126,7 +126,7 @@ std::vector<osg::ref_ptr<Outfit>> CrowdOutfits::all() const
     return outfits;
 }
 
-Result<void> CrowdOutfits::check(const osg::Group& crowd, const AnimationSet& set, const Outfit* outfit)
+Result<void> OutfitMeshes::check(const osg::Group& crowd, const AnimationSet& set, const Outfit* outfit)
 {
     if (!outfit) return Error{"there is no outfit"};
     const std::string subject = "outfit \"" + outfit->getName() + "\": ";
@@ -166,7 +166,7 @@ Result<void> CrowdOutfits::check(const osg::Group& crowd, const AnimationSet& se
     return {};
 }
 
-Result<const CrowdOutfits::PropMesh*> CrowdOutfits::propMesh(const Outfit::Prop& prop, const AnimationSet& set)
+Result<const OutfitMeshes::PropMesh*> OutfitMeshes::propMesh(const Outfit::Prop& prop, const AnimationSet& set)
 {
     for (const PropMesh& known : _props)
         if (known.prop == prop) return &known;
@@ -176,7 +176,7 @@ Result<const CrowdOutfits::PropMesh*> CrowdOutfits::propMesh(const Outfit::Prop&
     return &_props.back();
 }
 
-Result<void> CrowdOutfits::add(const osg::Group& crowd, const AnimationSet& set, Outfit* outfit)
+Result<void> OutfitMeshes::add(const osg::Group& crowd, const AnimationSet& set, Outfit* outfit)
 {
     if (numberOf(outfit) != 0) return Error{"the crowd has the outfit \"" + outfit->getName() + "\" already"};
     if (const Result<void> checked = check(crowd, set, outfit); !checked) return checked;
@@ -191,7 +191,7 @@ Result<void> CrowdOutfits::add(const osg::Group& crowd, const AnimationSet& set,
     return {};
 }
 
-Result<void> CrowdOutfits::replace(const osg::Group& crowd, const AnimationSet& set, const Outfit* outfit, Outfit* by)
+Result<void> OutfitMeshes::replace(const osg::Group& crowd, const AnimationSet& set, const Outfit* outfit, Outfit* by)
 {
     const Number number = numberOf(outfit);
     if (number == 0) return Error{"the crowd has no such outfit"};
@@ -202,7 +202,7 @@ Result<void> CrowdOutfits::replace(const osg::Group& crowd, const AnimationSet& 
     return {};
 }
 
-void CrowdOutfits::remove(const osg::Group& crowd, const Outfit* outfit)
+void OutfitMeshes::remove(const osg::Group& crowd, const Outfit* outfit)
 {
     if (const Number number = numberOf(outfit); number != 0) _outfits[number - 1u] = nullptr;
     while (!_outfits.empty() && !_outfits.back())
@@ -210,7 +210,7 @@ void CrowdOutfits::remove(const osg::Group& crowd, const Outfit* outfit)
     make(crowd);
 }
 
-void CrowdOutfits::update(const osg::Group& crowd)
+void OutfitMeshes::update(const osg::Group& crowd)
 {
     std::size_t count = 0;
     bool isSame = true;
@@ -227,7 +227,7 @@ void CrowdOutfits::update(const osg::Group& crowd)
 
 /// function(Number, const Outfit&), for each outfit.
 template <typename Function>
-void CrowdOutfits::forEachOutfit(Function function) const
+void OutfitMeshes::forEachOutfit(Function function) const
 {
     for (std::size_t i = 0; i < _outfits.size(); ++i)
         if (_outfits[i]) function(static_cast<Number>(i + 1), *_outfits[i]);
@@ -235,7 +235,7 @@ void CrowdOutfits::forEachOutfit(Function function) const
 
 /// The colours of each material that some outfit colours, white for the others. A uniform does not change: draws of the
 /// frame before may read it.
-void CrowdOutfits::makeUniforms()
+void OutfitMeshes::makeUniforms()
 {
     std::map<std::string, osg::ref_ptr<osg::Uniform>> made;
     forEachOutfit(
@@ -259,7 +259,7 @@ void CrowdOutfits::makeUniforms()
 }
 
 /// The StateSet with the outfit's picture, and with the colours of all outfits. outfit: null: without a picture.
-osg::StateSet* CrowdOutfits::stateFor(osg::StateSet* state, const Outfit* outfit)
+osg::StateSet* OutfitMeshes::stateFor(osg::StateSet* state, const Outfit* outfit)
 {
     if (!state) return nullptr;
     const osg::ref_ptr<osg::Image>* picture = outfit ? find(outfit->getPictures(), state->getName()) : nullptr;
@@ -279,7 +279,7 @@ osg::StateSet* CrowdOutfits::stateFor(osg::StateSet* state, const Outfit* outfit
 }
 
 /// The copy of the last make(), whose GL objects and levels of detail exist, or a new one.
-osg::ref_ptr<SkinnedGeometry> CrowdOutfits::copyOf(SkinnedGeometry& mesh, osg::StateSet* state) const
+osg::ref_ptr<SkinnedGeometry> OutfitMeshes::copyOf(SkinnedGeometry& mesh, osg::StateSet* state) const
 {
     for (const Shown& known : _before)
         if (known.mesh == &mesh && known.copy->getStateSet() == state) return known.copy;
@@ -288,7 +288,7 @@ osg::ref_ptr<SkinnedGeometry> CrowdOutfits::copyOf(SkinnedGeometry& mesh, osg::S
     return copy;
 }
 
-void CrowdOutfits::show(SkinnedGeometry& mesh, bool isOwn, const States& states)
+void OutfitMeshes::show(SkinnedGeometry& mesh, bool isOwn, const States& states)
 {
     for (const auto& [state, outfits] : states)
     {
@@ -296,15 +296,15 @@ void CrowdOutfits::show(SkinnedGeometry& mesh, bool isOwn, const States& states)
         copy->setNodeMask(mesh.getNodeMask() != 0 ? mesh.getNodeMask() : ~0u);
         _meshes->addChild(copy);
         const auto known = std::find(_lists.lists.begin(), _lists.lists.end(), outfits);
-        _listsOfMeshes.push_back(static_cast<std::size_t>(known - _lists.lists.begin()));
-        _listOf[copy] = _listsOfMeshes.back();
+        _lists.ofMeshes.push_back(static_cast<std::size_t>(known - _lists.lists.begin()));
+        _lists.listOf[copy] = _lists.ofMeshes.back();
         if (known == _lists.lists.end()) _lists.lists.push_back(outfits);
         const bool isAsInCrowd = isOwn && state == mesh.getStateSet() && mesh.getNodeMask() != 0;
         _shown.push_back({&mesh, copy, isAsInCrowd, outfits});
     }
 }
 
-void CrowdOutfits::showOwn(SkinnedGeometry& mesh, const std::vector<std::map<const SkinnedGeometry*, bool>>& visibility)
+void OutfitMeshes::showOwn(SkinnedGeometry& mesh, const std::vector<std::map<const SkinnedGeometry*, bool>>& visibility)
 {
     States states;
     if (mesh.getNodeMask() != 0) addTo(states, stateFor(mesh.getStateSet(), nullptr), 0);
@@ -321,7 +321,7 @@ void CrowdOutfits::showOwn(SkinnedGeometry& mesh, const std::vector<std::map<con
     show(mesh, true, states);
 }
 
-void CrowdOutfits::showProps()
+void OutfitMeshes::showProps()
 {
     const auto isOf = [](const Outfit& outfit, const Outfit::Prop& prop)
     { return std::find(outfit.getProps().begin(), outfit.getProps().end(), prop) != outfit.getProps().end(); };
@@ -343,7 +343,7 @@ void CrowdOutfits::showProps()
     }
 }
 
-void CrowdOutfits::make(const osg::Group& crowd)
+void OutfitMeshes::make(const osg::Group& crowd)
 {
     if (!_shown.empty()) _before = std::move(_shown);
     if (!_states.empty()) _statesBefore = std::move(_states);
@@ -351,8 +351,8 @@ void CrowdOutfits::make(const osg::Group& crowd)
     _meshes->removeChildren(0, _meshes->getNumChildren());
     _sources.clear();
     _shown.clear();
-    _listsOfMeshes.clear();
-    _listOf.clear();
+    _lists.ofMeshes.clear();
+    _lists.listOf.clear();
     // The list of all instances has the numbers that they may have: lists are equal if they have the same instances.
     _lists.lists = {OutfitLists::Outfits(1)};
     forEachOutfit([&](Number number, const Outfit&) { _lists.lists.front().set(number); });
@@ -378,7 +378,7 @@ void CrowdOutfits::make(const osg::Group& crowd)
     _statesBefore.clear();
 }
 
-NodesOfOutfits CrowdOutfits::nodesOfOutfits() const
+NodesOfOutfits OutfitMeshes::nodesOfOutfits() const
 {
     NodesOfOutfits nodes(_outfits.size() + 1);
     for (const Shown& shown : _shown)

@@ -14,7 +14,6 @@
 #include <memory>
 #include <string>
 #include <tuple>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -23,21 +22,21 @@ namespace osgGpuAnimation
 
 /// The outfits of a crowd, and the meshes to draw for them: for each mesh of the crowd a copy for each StateSet in
 /// which some outfit shows it, and the meshes of props. Cull threads read them.
-class CrowdOutfits
+class OutfitMeshes
 {
 public:
     using Number = std::uint16_t; ///< of an outfit, in [1, OutfitLists::maxOutfits]; 0: none
 
-    CrowdOutfits() = default;
+    OutfitMeshes() = default;
     /// The same outfits. update() makes the meshes, which are the same for the same crowd's meshes.
-    CrowdOutfits(const CrowdOutfits& other)
+    OutfitMeshes(const OutfitMeshes& other)
         : _outfits(other._outfits), _props(other._props), _before(other._shown), _colors(other._colors),
           _statesBefore(other._states)
     {
     }
-    CrowdOutfits& operator=(const CrowdOutfits&) = delete;
+    OutfitMeshes& operator=(const OutfitMeshes&) = delete;
 
-    /// Errors: see AnimatedCrowd::addOutfit().
+    /// Errors: see CrowdOutfits::add().
     Result<void> add(const osg::Group& crowd, const AnimationSet& set, Outfit* outfit);
     /// Errors: those of add(); there is no such outfit.
     Result<void> replace(const osg::Group& crowd, const AnimationSet& set, const Outfit* outfit, Outfit* by);
@@ -53,8 +52,6 @@ public:
     /// The meshes to draw in place of the crowd's. Its node is in no scene.
     const osg::Group& meshes() const { return *_meshes; }
     const OutfitLists& lists() const { return _lists; }
-    std::size_t listOf(const SkinnedGeometry& mesh) const { return _listOf.at(&mesh); } ///< mesh: of meshes()
-    const std::vector<std::size_t>& listsOfMeshes() const { return _listsOfMeshes; }    ///< in the order of meshes()
     /// For intersectors and writers: the crowd's own meshes where outfits show them as they are.
     NodesOfOutfits nodesOfOutfits() const;
 
@@ -107,8 +104,6 @@ private:
     osg::ref_ptr<osg::Group> _meshes = new osg::Group;
     std::vector<Shown> _shown, _before; ///< of the last make(), and of the one before
     OutfitLists _lists;
-    std::vector<std::size_t> _listsOfMeshes;
-    std::unordered_map<const SkinnedGeometry*, std::size_t> _listOf;
     std::map<std::string, osg::ref_ptr<osg::Uniform>> _colors; ///< by material: its colours in all outfits
     DerivedStates _states, _statesBefore;
 };

@@ -9,8 +9,53 @@
 #include <osgGpuAnimation/scene/traversal/CullScopes.h>
 #include <osgGpuAnimation/scene/traversal/MeshVisits.h>
 
+#include <optional>
+#include <utility>
+#include <vector>
+
 namespace osgGpuAnimation
 {
+
+namespace
+{
+
+/// The meshes to draw at a level, each with its list of instances.
+class LevelMeshes
+{
+public:
+    using Meshes = std::vector<std::pair<SkinnedGeometry*, std::size_t>>;
+
+    LevelMeshes(const CulledCrowd& crowd, const LodRange& lods) : _crowd(crowd), _lods(lods), _meshes(storage()) {}
+
+    const Meshes& at(int level)
+    {
+        if (_level == level) return _meshes;
+        _level = level;
+        _meshes.clear();
+        _lods.forEachMeshAt(level, _crowd.meshes,
+                            [&](const SkinnedGeometry& mesh, const SkinnedGeometry& part)
+                            {
+                                const std::size_t list =
+                                    _crowd.outfits ? _crowd.outfits->listOf.at(&part) : OutfitLists::all;
+                                _meshes.emplace_back(const_cast<SkinnedGeometry*>(&mesh), list);
+                            });
+        return _meshes;
+    }
+
+private:
+    static Meshes& storage()
+    {
+        static thread_local Meshes meshes; // keeps its storage from cull to cull
+        return meshes;
+    }
+
+    const CulledCrowd& _crowd;
+    const LodRange& _lods;
+    Meshes& _meshes;
+    std::optional<int> _level; ///< of the meshes
+};
+
+} // namespace
 
 void cullCrowd(const CulledCrowd& crowd, osgUtil::CullVisitor& visitor)
 {
@@ -31,15 +76,12 @@ void cullCrowd(const CulledCrowd& crowd, osgUtil::CullVisitor& visitor)
         const LodScale scale(visitor, PoseStage::lodView(visitor), crowd.pixelError, lods);
         draws = submitSeen(PoseStage::frame(visitor), crowd.instances, scale, crowd.sharedPoses, crowd.outfits, seen);
     }
+    LevelMeshes meshes(crowd, lods);
     for (const DrawState& draw : draws)
     {
         visitor.pushStateSet(draw.stateSet);
-        lods.forEachMeshAt(draw.binding->getLevel(), crowd.meshes,
-                           [&](const SkinnedGeometry& mesh, const SkinnedGeometry& part)
-                           {
-                               if (!crowd.outfits || crowd.outfits->listOf.at(&part) == draw.list)
-                                   view.draw(const_cast<SkinnedGeometry&>(mesh), *draw.binding);
-                           });
+        for (const auto& [mesh, list] : meshes.at(draw.binding->getLevel()))
+            if (list == draw.list) view.draw(*mesh, *draw.binding);
         visitor.popStateSet();
     }
     const UnculledScope unculled(visitor);

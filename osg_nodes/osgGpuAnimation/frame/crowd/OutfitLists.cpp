@@ -11,7 +11,9 @@ namespace osgGpuAnimation
 void OutfitLists::arrange(const CrowdInstances& instances, std::vector<PlacedInstances::Drawn>& drawn,
                           std::vector<Run>& runs) const
 {
-    std::vector<PlacedInstances::Drawn> sorted, listed;
+    static thread_local std::vector<PlacedInstances::Drawn> sorted; // keeps its storage from cull to cull
+    std::vector<PlacedInstances::Drawn> listed;
+    listed.reserve(lists.size() * drawn.size());
     std::vector<Run> runsOfLists;
     for (const Run& run : runs)
     {
@@ -20,7 +22,7 @@ void OutfitLists::arrange(const CrowdInstances& instances, std::vector<PlacedIns
         std::array<std::uint32_t, maxOutfits + 2> ends{}; // by outfit: where its instances end
         for (const PlacedInstances::Drawn* each = begin; each != end; ++each)
             ++ends[instances.outfit(each->instance) + 1u];
-        for (std::size_t outfit = 1; outfit < ends.size(); ++outfit)
+        for (std::size_t outfit = 1; outfit <= numberCount; ++outfit)
             ends[outfit] += ends[outfit - 1];
         const std::array<std::uint32_t, maxOutfits + 2> begins = ends;
         sorted.resize(run.count);
@@ -32,7 +34,7 @@ void OutfitLists::arrange(const CrowdInstances& instances, std::vector<PlacedIns
         for (std::size_t list = 0; list < lists.size(); ++list)
         {
             const std::size_t first = listed.size();
-            for (std::size_t outfit = 0; outfit <= maxOutfits; ++outfit)
+            for (std::size_t outfit = 0; outfit < numberCount; ++outfit)
                 if (lists[list][outfit])
                     listed.insert(listed.end(), sorted.begin() + begins[outfit], sorted.begin() + begins[outfit + 1]);
             if (listed.size() > first) runsOfLists.push_back({run.level, first, listed.size() - first, list});

@@ -30,6 +30,7 @@ struct OutfitLists
     };
 
     static constexpr std::size_t all = 0; ///< the list of all instances
+    std::size_t numberCount = 1; ///< numbers of outfits in use, 0 included
     std::vector<Outfits> lists{Outfits().set()};
     std::vector<std::size_t> ofMeshes; ///< the list of each mesh, see CharacterLevels::Lists
     std::unordered_map<const SkinnedGeometry*, std::size_t> listOf; ///< the same by mesh

@@ -356,6 +356,7 @@ void OutfitMeshes::make(const osg::Group& crowd)
     // The list of all instances has the numbers that they may have: lists are equal if they have the same instances.
     _lists.lists = {OutfitLists::Outfits(1)};
     forEachOutfit([&](Number number, const Outfit&) { _lists.lists.front().set(number); });
+    _lists.numberCount = _outfits.size() + 1;
     makeUniforms();
     std::vector<std::map<const SkinnedGeometry*, bool>> visibility(_outfits.size() + 1);
     forEachOutfit(

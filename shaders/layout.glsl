@@ -90,6 +90,7 @@
 // Vertex attributes of surfaces: the tangent, and the texture coordinates 1 and 2.
 #define POSE_TANGENT_LOCATION 4
 #define POSE_COORDINATES_LOCATION 9
+#define POSE_PART_LOCATION 9 // of merged meshes, which have one texture coordinate at most
 
 // The texture units of a material's maps, after those of osgShadow's techniques (1 to 7). Unit 0 is the base colour.
 #define METALLIC_ROUGHNESS_UNIT 8
@@ -111,6 +112,7 @@
 #define POSE_DRAWN_INDEX_MASK 0xFFFFFu
 
 // The colours of one material in all outfits of a crowd, four to a vector: RGBA, 8 bits each, red lowest.
+// Of a mesh that shows several parts, the parts of each outfit in the same way: bit p for the vertices of part p.
 #define POSE_OUTFITS_PER_VECTOR 4
 #define POSE_OUTFIT_VECTORS 65
 

@@ -11,7 +11,7 @@
 // drivers (llvmpipe) run both sides of every branch. Without the defines the uniforms decide. A SkinnedGeometry has
 // POSE_INFLUENCES or POSE_SKINNED: without them, so for all other meshes, the functions change nothing.
 #pragma import_defines(POSE_SKINNED, POSE_INFLUENCES, POSE_NO_MORPHS, POSE_INSTANCED, POSE_PLACED, POSE_LISTED)
-#pragma import_defines(POSE_OUTFIT_COLORS)
+#pragma import_defines(POSE_OUTFIT_COLORS, POSE_OUTFIT_PARTS)
 
 #if defined(POSE_SKINNED) || defined(POSE_INFLUENCES)
 
@@ -70,12 +70,29 @@ int osgGpuAnimationPlacement()
     return int(texelFetch(poseDrawn, poseInstance + gl_InstanceID).y & POSE_DRAWN_INDEX_MASK);
 }
 
+int osgGpuAnimationOutfit()
+{
+    return int(texelFetch(poseDrawn, poseInstance + gl_InstanceID).y >> POSE_DRAWN_OUTFIT_SHIFT);
+}
+
+#ifdef POSE_OUTFIT_PARTS
+in float posePart;
+uniform uvec4 poseOutfitParts[POSE_OUTFIT_VECTORS];
+
+bool osgGpuAnimationIsShown()
+{
+    int outfit = osgGpuAnimationOutfit();
+    uint parts = poseOutfitParts[outfit / POSE_OUTFITS_PER_VECTOR][outfit % POSE_OUTFITS_PER_VECTOR];
+    return (parts >> (uint(posePart + 0.5) & 31u) & 1u) != 0u;
+}
+#endif
+
 #ifdef POSE_OUTFIT_COLORS
 uniform uvec4 poseOutfitColors[POSE_OUTFIT_VECTORS];
 
 vec4 osgGpuAnimationOutfitColor()
 {
-    int outfit = int(texelFetch(poseDrawn, poseInstance + gl_InstanceID).y >> POSE_DRAWN_OUTFIT_SHIFT);
+    int outfit = osgGpuAnimationOutfit();
     uint color = poseOutfitColors[outfit / POSE_OUTFITS_PER_VECTOR][outfit % POSE_OUTFITS_PER_VECTOR];
     return vec4(uvec4(color, color >> 8, color >> 16, color >> 24) & 255u) / 255.0;
 }
@@ -182,6 +199,9 @@ void osgGpuAnimationSkinTangent(inout vec4 vertex, inout vec3 normal, inout vec4
     int texel = osgGpuAnimationPlacement() * POSE_TEXELS_PER_MATRIX;
     osgGpuAnimationMove(mat3x4(texelFetch(posePlacements, texel), texelFetch(posePlacements, texel + 1),
                                texelFetch(posePlacements, texel + 2)), vertex, normal, tangent);
+#endif
+#ifdef POSE_OUTFIT_PARTS
+    if (!osgGpuAnimationIsShown()) vertex = vec4(0.0); // triangles with such a vertex have no area
 #endif
 }
 

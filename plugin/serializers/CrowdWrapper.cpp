@@ -28,7 +28,7 @@ bool hasLevels(const AnimatedCrowd& crowd)
 {
     const std::shared_ptr<const CharacterLevels>& levels = CrowdDetail::levels(crowd);
     return crowd.getMeshes().getPixelError() > 0.0f && levels &&
-           levels->isOf(CrowdDetail::drawnMeshes(crowd), crowd.getAnimationSet(), CrowdDetail::lists(crowd));
+           levels->isOf(CrowdDetail::drawnMeshes(crowd), crowd.getAnimationSet());
 }
 
 /// The playback data after an instance's placement.

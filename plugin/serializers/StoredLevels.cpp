@@ -138,8 +138,8 @@ void transferCharacterLevels(ValueStream& stream, AnimatedCrowd& crowd)
     if (!stream.hasRead()) return;
     if (sum != checksum.value()) return warn(crowd, "crowd", "its meshes have changed");
     if (const auto fault = findFault(levels, crowd.getAnimationSet())) return warn(crowd, "crowd", *fault);
-    const auto restored = CharacterLevels::restored(CrowdDetail::drawnMeshes(crowd), crowd.getAnimationSet(),
-                                                    std::move(levels), CrowdDetail::lists(crowd));
+    const auto restored =
+        CharacterLevels::restored(CrowdDetail::drawnMeshes(crowd), crowd.getAnimationSet(), std::move(levels));
     if (!restored) return warn(crowd, "crowd", restored.error().message);
     CrowdDetail::setLevels(crowd, restored.value());
 }

@@ -66,6 +66,9 @@ void measureDraws(const Subject& subject, Run& run);
 /// glTF's shading of a picture that the character fills, under one light and in the studio, compared with the fixed
 /// pipeline's look.
 void measureShading(const Subject& subject, Run& run);
+/// A crowd of 24 outfits that hide a third of the parts each, compared with one all alike and with 24 crowds. Nothing
+/// for subjects of less than four parts.
+void measureOutfits(const Subject& subject, Run& run);
 /// A field of 99,856 instances of a crowd with a pixel error, of which the camera sees half: whole frames, poses and
 /// bytes.
 void measureField(const Subject& subject, Run& run);

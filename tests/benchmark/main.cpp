@@ -96,13 +96,14 @@ std::map<std::string, std::string> describeMachine()
 }
 
 constexpr std::pair<const char*, void (*)(const Subject&, Run&)> parts[] = {
-    {"samples", measureSamples}, {"constraints", measureConstraints},
-    {"chunks", measureChunks},   {"compact", measureCompact},
-    {"pose", measurePose},       {"frames", measureFrames},
-    {"crowd", measureCrowd},     {"field", measureField},
-    {"draws", measureDraws},     {"pictures", measurePictures},
-    {"shading", measureShading}, {"start", measureStart},
-    {"memory", measureMemory},   {"load", measureLoad}};
+    {"samples", measureSamples},   {"constraints", measureConstraints},
+    {"chunks", measureChunks},     {"compact", measureCompact},
+    {"pose", measurePose},         {"frames", measureFrames},
+    {"crowd", measureCrowd},       {"outfits", measureOutfits},
+    {"field", measureField},       {"draws", measureDraws},
+    {"pictures", measurePictures}, {"shading", measureShading},
+    {"start", measureStart},       {"memory", measureMemory},
+    {"load", measureLoad}};
 
 void measureAll(const Request& request, Run& run)
 {

@@ -54,7 +54,7 @@ struct Arm
     {
         std::vector<const SkinnedGeometry*> merged;
         levels.forEachMeshAt(level, *meshes,
-                             [&](const SkinnedGeometry& mesh, const SkinnedGeometry&)
+                             [&](const SkinnedGeometry& mesh)
                              {
                                  if (!has(mesh)) merged.push_back(&mesh);
                              });
@@ -63,8 +63,7 @@ struct Arm
     std::size_t timesDrawn(const CharacterLevels& levels, int level, const SkinnedGeometry& part) const
     {
         std::size_t times = 0;
-        levels.forEachMeshAt(level, *meshes,
-                             [&](const SkinnedGeometry& mesh, const SkinnedGeometry&) { times += &mesh == &part; });
+        levels.forEachMeshAt(level, *meshes, [&](const SkinnedGeometry& mesh) { times += &mesh == &part; });
         return times;
     }
 };

@@ -46,7 +46,7 @@ struct TubeCrowd
     {
         std::size_t count = 0;
         LodRange(*crowd, *set, CrowdDetail::levels(*crowd))
-            .forEachMeshAt(level, *crowd, [&](const SkinnedGeometry&, const SkinnedGeometry&) { ++count; });
+            .forEachMeshAt(level, *crowd, [&](const SkinnedGeometry&) { ++count; });
         return count;
     }
 };

@@ -41,8 +41,7 @@ public:
             add(mesh, isPart ? MeshDetail::levels(mesh, set).get() : nullptr, level, palette);
         };
         if (merged)
-            merged->forEachMeshAt(level, meshes,
-                                  [&](const SkinnedGeometry& mesh, const SkinnedGeometry&) { show(mesh); });
+            merged->forEachMeshAt(level, meshes, show);
         else
             forEachMesh(meshes, show);
     }

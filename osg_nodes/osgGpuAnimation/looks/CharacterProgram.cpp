@@ -128,6 +128,7 @@ void bindSkinAttributes(osg::Program& program)
     program.addBindAttribLocation("poseInstancePose", POSE_INSTANCE_POSE_LOCATION);
     program.addBindAttribLocation("poseTangent", POSE_TANGENT_LOCATION);
     program.addBindAttribLocation("poseCoordinates", POSE_COORDINATES_LOCATION);
+    program.addBindAttribLocation("posePart", POSE_PART_LOCATION);
 }
 
 osg::ref_ptr<osg::Program> characterProgram()

@@ -179,6 +179,7 @@ osg::Vec4 AnimatedCrowd::getTint(Instance instance) const
 
 void AnimatedCrowd::showOutfits()
 {
+    _meshes.showLevels();
     if (_meshes._outfits->hasProps()) computeBounds();
     dirtyBound();
 }
@@ -378,7 +379,7 @@ void AnimatedCrowd::traverse(osg::NodeVisitor& visitor)
 
 void AnimatedCrowd::prepareSharedPoses()
 {
-    if (_meshes._outfits) _meshes._outfits->update(*this);
+    if (_meshes._outfits && _meshes._outfits->update(*this)) _meshes.showLevels();
     if (_sharedPoses) _sharedPoses->forgetUnused();
     _meshes.updateLevels();
     const bool isOn = _meshes.getPixelError() > 0.0f && getAnimationSet().paletteSize() > 0;

@@ -118,10 +118,9 @@ const osg::Group& CharacterMeshes::drawn() const
     return _outfits ? _outfits->meshes() : _node;
 }
 
-const std::vector<std::size_t>& CharacterMeshes::lists() const
+void CharacterMeshes::showLevels()
 {
-    static const std::vector<std::size_t> all;
-    return _outfits ? _outfits->lists().ofMeshes : all;
+    if (_outfits) _outfits->showLevels(_levels && _levels->isOf(drawn(), *_set) ? _levels.get() : nullptr);
 }
 
 Result<void> CharacterMeshes::setPixelError(float pixels)
@@ -135,7 +134,7 @@ Result<void> CharacterMeshes::setPixelError(float pixels)
 
 void CharacterMeshes::requestPresentLevels()
 {
-    if (_levels && !_levels->isOf(drawn(), *_set, lists())) _levels = nullptr;
+    if (_levels && !_levels->isOf(drawn(), *_set)) _levels = nullptr;
     requestLevels();
 }
 
@@ -150,16 +149,17 @@ void CharacterMeshes::requestLevels()
     const bool isMerged = !_controller && !_levels;
     if (!isMissingLevels())
         _task = nullptr;
-    else if (!_task || !_task->isOf(drawn(), *_set, isMerged, lists()))
-        _task = LevelsTask::of(drawn(), _set, isMerged, lists());
+    else if (!_task || !_task->isOf(drawn(), *_set, isMerged))
+        _task = LevelsTask::of(drawn(), _set, isMerged, _outfits != nullptr);
     if (_task && _task->isDone()) takeLevels(); // of another node
 }
 
 void CharacterMeshes::takeLevels()
 {
     const std::shared_ptr<const CharacterLevels> merged = _task->take();
-    if (!_controller && !_levels && merged && merged->isOf(drawn(), *_set, lists())) _levels = merged;
+    if (!_controller && !_levels && merged && merged->isOf(drawn(), *_set)) _levels = merged;
     _task = nullptr;
+    showLevels();
 }
 
 void CharacterMeshes::updateLevels()

@@ -86,7 +86,7 @@ private:
     void showVariant();                              ///< after the node has got further meshes
     void showProperties();                           ///< those of the controller's present pose
     const osg::Group& drawn() const;                 ///< the node, or the meshes of a crowd's outfits
-    const std::vector<std::size_t>& lists() const;   ///< see CharacterLevels::Lists
+    void showLevels();                               ///< after a change of the levels or outfits
     void updateLevels();                             ///< in the update traversal: takes or requests what is missing
     void requestLevels();                            ///< those that are missing, unless they are being made
     void requestPresentLevels();                     ///< the same, without those of earlier meshes

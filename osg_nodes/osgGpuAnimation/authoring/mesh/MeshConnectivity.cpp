@@ -95,6 +95,8 @@ void MeshConnectivity::weldPoints()
         for (const std::vector<glm::vec3>& positions : _surface.poses)
             for (int axis = 0; axis < 3; ++axis)
                 if (positions[a][axis] != positions[b][axis]) return positions[a][axis] < positions[b][axis] ? -1 : 1;
+        if (!_surface.pieces.empty() && _surface.pieces[a] != _surface.pieces[b])
+            return _surface.pieces[a] < _surface.pieces[b] ? -1 : 1;
         return 0;
     };
     std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return compare(a, b) < 0; });

@@ -26,7 +26,8 @@ struct PosedSurface
     std::vector<glm::vec3> normals;                                 ///< one per vertex, or empty
     std::vector<glm::vec2> texCoords;                               ///< one per vertex, or empty
     std::vector<glm::vec3> colors;                                  ///< one per vertex, in [0, 1], or empty
-    bool isTwoSided = false;                                        ///< triangles show the same from behind
+    std::vector<std::uint32_t> pieces;       ///< one per vertex, or empty: those of two stay apart
+    bool isTwoSided = false;                 ///< triangles show the same from behind
     const std::atomic<bool>* stop = nullptr; ///< true: nobody needs a result, so that any ends the work; null: false
 
     bool isStopped() const { return stop && *stop; }
@@ -64,6 +65,11 @@ public:
     std::uint32_t pointOf(std::uint32_t vertex) const { return _pointOf[vertex]; }
     /// The vertices of the point that original triangles use.
     const std::vector<std::uint32_t>& verticesOf(std::uint32_t point) const { return _verticesOf[point]; }
+    bool isOfOnePiece(std::uint32_t point, std::uint32_t other) const
+    {
+        return _surface.pieces.empty() ||
+               _surface.pieces[verticesOf(point).front()] == _surface.pieces[verticesOf(other).front()];
+    }
     glm::dvec3 at(std::size_t pose, std::uint32_t point) const
     {
         return glm::dvec3(_surface.poses[pose][_placeOf[point]]);

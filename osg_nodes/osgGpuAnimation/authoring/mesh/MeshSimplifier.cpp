@@ -160,7 +160,8 @@ void MeshSimplifier::considerNear()
                 std::equal_range(points.begin(), points.end(), std::pair(there, std::uint32_t(0)), isBefore);
             const auto end = first + std::min<std::ptrdiff_t>(last - first, maxNear);
             for (auto to = first; to != end; ++to)
-                if (to->second != from && isWithinLimit(from, to->second)) consider(from, to->second);
+                if (to->second != from && _mesh.isOfOnePiece(from, to->second) && isWithinLimit(from, to->second))
+                    consider(from, to->second);
         }
 }
 

@@ -59,7 +59,7 @@ void sortByBlendCost(const CrowdInstances& instances, const Indices& seen, Indic
 
 /// Submits instances with outfits, as many at once as one palette of the context holds, and appends their draws. runs:
 /// the levels of the indices.
-void submitListed(PoseFrame& frame, const CrowdInstances& instances, const OutfitLists& lists, const Indices& indices,
+void submitListed(PoseFrame& frame, const CrowdInstances& instances, const DrawnLists& lists, const Indices& indices,
                   const std::vector<OutfitLists::Run>& runs, std::vector<DrawState>& draws)
 {
     PosePipeline::Options options;
@@ -205,7 +205,7 @@ void CrowdLod::sort(std::vector<std::uint32_t>& indices, std::vector<OutfitLists
 }
 
 std::vector<DrawState> submitSeen(PoseFrame& frame, const CrowdInstances& instances, const CrowdLod& lod,
-                                  const OutfitLists* lists, const std::vector<std::uint32_t>& seen)
+                                  const DrawnLists* lists, const std::vector<std::uint32_t>& seen)
 {
     static thread_local IndicesByCost indicesByCost;
     sortByBlendCost(instances, seen, indicesByCost);

@@ -77,6 +77,6 @@ private:
 /// own draw. lists: of a crowd with outfits; null: none. seen: indices of the visible instances. Cameras may cull
 /// concurrently.
 std::vector<DrawState> submitSeen(PoseFrame& frame, const CrowdInstances& instances, const CrowdLod& lod,
-                                  const OutfitLists* lists, const std::vector<std::uint32_t>& seen);
+                                  const DrawnLists* lists, const std::vector<std::uint32_t>& seen);
 
 } // namespace osgGpuAnimation

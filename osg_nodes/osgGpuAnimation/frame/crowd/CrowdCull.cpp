@@ -23,9 +23,9 @@ namespace
 class LevelMeshes
 {
 public:
-    using Meshes = std::vector<std::pair<SkinnedGeometry*, std::size_t>>;
+    using Meshes = std::vector<std::pair<SkinnedGeometry*, OutfitLists::Mesh>>;
 
-    LevelMeshes(const CulledCrowd& crowd, const LodRange& lods) : _crowd(crowd), _lods(lods), _meshes(storage()) {}
+    LevelMeshes(const CulledCrowd& crowd, const LodRange& lods) : _crowd(crowd), _lods(lods) {}
 
     const Meshes& at(int level)
     {
@@ -33,25 +33,33 @@ public:
         _level = level;
         _meshes.clear();
         _lods.forEachMeshAt(level, _crowd.meshes,
-                            [&](const SkinnedGeometry& mesh, const SkinnedGeometry& part)
-                            {
-                                const std::size_t list =
-                                    _crowd.outfits ? _crowd.outfits->listOf.at(&part) : OutfitLists::all;
-                                _meshes.emplace_back(const_cast<SkinnedGeometry*>(&mesh), list);
-                            });
+                            [&](const SkinnedGeometry& mesh)
+                            { _meshes.emplace_back(const_cast<SkinnedGeometry*>(&mesh), drawn(mesh)); });
         return _meshes;
     }
 
-private:
-    static Meshes& storage()
+    /// By list: whether it is drawn. The meshes below other children have that of all instances.
+    std::vector<bool> listsAt(int level)
     {
-        static thread_local Meshes meshes; // keeps its storage from cull to cull
-        return meshes;
+        std::vector<bool> lists(_crowd.outfits->lists.size(), false);
+        for (const auto& [mesh, drawn] : at(level))
+            lists[drawn.list] = true;
+        for (unsigned int child = 0; child < _crowd.node.getNumChildren(); ++child)
+            if (!dynamic_cast<const SkinnedGeometry*>(_crowd.node.getChild(child))) lists[OutfitLists::all] = true;
+        return lists;
+    }
+
+private:
+    OutfitLists::Mesh drawn(const SkinnedGeometry& mesh) const
+    {
+        if (!_crowd.outfits) return {};
+        const auto known = _crowd.outfits->meshes.find(&mesh);
+        return known == _crowd.outfits->meshes.end() ? OutfitLists::Mesh() : known->second;
     }
 
     const CulledCrowd& _crowd;
     const LodRange& _lods;
-    Meshes& _meshes;
+    Meshes _meshes;
     std::optional<int> _level; ///< of the meshes
 };
 
@@ -67,21 +75,27 @@ void cullCrowd(const CulledCrowd& crowd, osgUtil::CullVisitor& visitor)
     crowd.instances.findSeen(crowd.node.isCullingActive() ? view.planes() : std::vector<glm::vec4>(), seen);
     std::vector<DrawState> draws;
     LodRange lods;
+    LevelMeshes meshes(crowd, lods);
     if (seen.size() > 0 && set.paletteSize() > 0)
     {
         view.look(seen);
-        static const CharacterLevels::Lists all;
-        const CharacterLevels::Lists& lists = crowd.outfits ? crowd.outfits->ofMeshes : all;
-        if (crowd.pixelError > 0.0f) lods = LodRange(crowd.meshes, set, crowd.levels, lists);
+        if (crowd.pixelError > 0.0f) lods = LodRange(crowd.meshes, set, crowd.levels);
         const LodScale scale(visitor, PoseStage::lodView(visitor), crowd.pixelError, lods);
-        draws = submitSeen(PoseStage::frame(visitor), crowd.instances, scale, crowd.sharedPoses, crowd.outfits, seen);
+        std::optional<DrawnLists> lists;
+        if (crowd.outfits) lists.emplace(DrawnLists{*crowd.outfits, [&](int level) { return meshes.listsAt(level); }});
+        draws = submitSeen(PoseStage::frame(visitor), crowd.instances, scale, crowd.sharedPoses,
+                           lists ? &*lists : nullptr, seen);
     }
-    LevelMeshes meshes(crowd, lods);
     for (const DrawState& draw : draws)
     {
         visitor.pushStateSet(draw.stateSet);
-        for (const auto& [mesh, list] : meshes.at(draw.binding->getLevel()))
-            if (list == draw.list) view.draw(*mesh, *draw.binding);
+        for (const auto& [mesh, drawn] : meshes.at(draw.binding->getLevel()))
+        {
+            if (drawn.list != draw.list) continue;
+            if (drawn.parts) visitor.pushStateSet(drawn.parts);
+            view.draw(*mesh, *draw.binding);
+            if (drawn.parts) visitor.popStateSet();
+        }
         visitor.popStateSet();
     }
     const UnculledScope unculled(visitor);

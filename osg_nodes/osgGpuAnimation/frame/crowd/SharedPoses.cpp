@@ -374,7 +374,7 @@ std::shared_ptr<const PlacedInstances> SharedPoses::shared(std::shared_ptr<Place
 }
 
 std::vector<DrawState> SharedPoses::submit(PoseFrame& frame, const CrowdInstances& instances, const LodScale& scale,
-                                           const OutfitLists* lists, const SeenMembers& seen,
+                                           const DrawnLists* lists, const SeenMembers& seen,
                                            std::vector<std::uint32_t>& outOthers) const
 {
     const AnimationSet& set = *instances.set();
@@ -419,7 +419,7 @@ std::vector<DrawState> SharedPoses::submit(PoseFrame& frame, const CrowdInstance
 }
 
 std::vector<DrawState> submitSeen(PoseFrame& frame, const CrowdInstances& instances, const LodScale& scale,
-                                  const SharedPoses* shared, const OutfitLists* lists, const SeenMembers& seen)
+                                  const SharedPoses* shared, const DrawnLists* lists, const SeenMembers& seen)
 {
     static thread_local std::vector<std::uint32_t> others; // keeps its storage from cull to cull
     std::vector<DrawState> draws;

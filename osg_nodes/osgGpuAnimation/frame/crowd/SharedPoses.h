@@ -43,7 +43,7 @@ public:
     /// meshes. outOthers: the indices of the others. scale: of the camera that culls. lists: of a crowd with outfits;
     /// null: none. Cameras may cull concurrently.
     std::vector<DrawState> submit(PoseFrame& frame, const CrowdInstances& instances, const LodScale& scale,
-                                  const OutfitLists* lists, const SeenMembers& seen,
+                                  const DrawnLists* lists, const SeenMembers& seen,
                                   std::vector<std::uint32_t>& outOthers) const;
 
 private:
@@ -84,6 +84,6 @@ private:
 /// Submits the visible instances of a crowd to the frame and returns a state for each draw of the crowd's meshes.
 /// shared: of the crowd; null: no instances share poses. lists: of a crowd with outfits; null: none.
 std::vector<DrawState> submitSeen(PoseFrame& frame, const CrowdInstances& instances, const LodScale& scale,
-                                  const SharedPoses* shared, const OutfitLists* lists, const SeenMembers& seen);
+                                  const SharedPoses* shared, const DrawnLists* lists, const SeenMembers& seen);
 
 } // namespace osgGpuAnimation

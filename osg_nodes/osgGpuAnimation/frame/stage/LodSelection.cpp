@@ -20,9 +20,8 @@ std::string LodRange::describePixelErrors()
     return "a number of pixels from 0 to " + std::to_string(maxPixelError);
 }
 
-LodRange::LodRange(const osg::Group& meshes, const AnimationSet& set, std::shared_ptr<const CharacterLevels> merged,
-                   const CharacterLevels::Lists& lists)
-    : _merged(merged && merged->isOf(meshes, set, lists) ? std::move(merged) : nullptr)
+LodRange::LodRange(const osg::Group& meshes, const AnimationSet& set, std::shared_ptr<const CharacterLevels> merged)
+    : _merged(merged && merged->isOf(meshes, set) ? std::move(merged) : nullptr)
 {
     const auto add = [&](const auto& levels)
     {

@@ -39,9 +39,9 @@ public:
 
     LodRange() = default;
     /// The range of the SkinnedGeometry among a group's children. Meshes without levels are drawn with all triangles.
-    /// merged: replaces meshes if it isOf() the group with these lists; null: nothing.
-    LodRange(const osg::Group& meshes, const AnimationSet& set, std::shared_ptr<const CharacterLevels> merged = nullptr,
-             const CharacterLevels::Lists& lists = {});
+    /// merged: replaces meshes if it isOf() the group; null: nothing.
+    LodRange(const osg::Group& meshes, const AnimationSet& set,
+             std::shared_ptr<const CharacterLevels> merged = nullptr);
 
     /// The level clamped to the range; allTriangles if it is finer.
     int clamped(int level) const
@@ -50,15 +50,14 @@ public:
     }
     /// The largest error of the surface at a level, in the set's units; at most LodLevels::errorOf(level).
     double foundError(int level) const;
-    /// function(const SkinnedGeometry& mesh, const SkinnedGeometry& part), for the meshes to draw at a level in place
-    /// of the group's. part: the first one that the mesh shows.
+    /// function(const SkinnedGeometry&), for the meshes to draw at a level in place of the group's.
     template <typename Function>
     void forEachMeshAt(int level, const osg::Group& meshes, Function function) const
     {
         if (_merged)
             _merged->forEachMeshAt(level, meshes, function);
         else
-            forEachMesh(meshes, [&](const SkinnedGeometry& mesh) { function(mesh, mesh); });
+            forEachMesh(meshes, function);
     }
 
 private:

@@ -69,44 +69,32 @@ bool CharacterLevels::Part::isOf(const SkinnedGeometry& present) const
                       { return set == known.set && (!set || set->getModifiedCount() == known.modifiedCount); });
 }
 
-/// Of the mesh of that number.
-static std::size_t listAt(const CharacterLevels::Lists& lists, std::size_t mesh)
-{
-    return mesh < lists.size() ? lists[mesh] : 0;
-}
-
-bool CharacterLevels::isOf(const osg::Group& meshes, const AnimationSet& set, const Lists& lists) const
+bool CharacterLevels::isOf(const osg::Group& meshes, const AnimationSet& set) const
 {
     bool isSame = &set == _set;
     std::size_t count = 0;
     forEachMesh(meshes,
                 [&](const SkinnedGeometry& mesh)
                 {
-                    isSame = isSame && count < _parts.size() && _parts[count].isOf(mesh) &&
-                             _parts[count].list == listAt(lists, count);
+                    isSame = isSame && count < _parts.size() && _parts[count].isOf(mesh);
                     ++count;
                 });
     return isSame && count == _parts.size();
 }
 
-std::vector<CharacterLevels::Part> CharacterLevels::partsOf(const osg::Group& meshes, const Lists& lists)
+std::vector<CharacterLevels::Part> CharacterLevels::partsOf(const osg::Group& meshes)
 {
     std::vector<Part> parts;
-    forEachMesh(meshes,
-                [&](const SkinnedGeometry& mesh)
-                {
-                    parts.emplace_back(mesh);
-                    parts.back().list = listAt(lists, parts.size() - 1);
-                });
+    forEachMesh(meshes, [&](const SkinnedGeometry& mesh) { parts.emplace_back(mesh); });
     return parts;
 }
 
-CharacterLevels::CharacterLevels(const osg::Group& meshes, const AnimationSet& set, const Lists& lists)
-    : CharacterLevels(partsOf(meshes, lists), set)
+CharacterLevels::CharacterLevels(const osg::Group& meshes, const AnimationSet& set)
+    : CharacterLevels(partsOf(meshes), set)
 {
     std::vector<Sources::Mesh> all;
     for (const Part& part : _parts)
-        all.push_back({part.mesh, part.mesh, part.list});
+        all.push_back({part.mesh, part.mesh});
     const Sources sources(all);
     if (sources.isEmpty()) return;
     Sources::Levels levels;
@@ -115,7 +103,7 @@ CharacterLevels::CharacterLevels(const osg::Group& meshes, const AnimationSet& s
     includeMade(sources.make(set, levels, nullptr));
 }
 
-CharacterLevels::Sources::Sources(const std::vector<Mesh>& meshes)
+CharacterLevels::Sources::Sources(const std::vector<Mesh>& meshes, bool keepsParts) : _keepsParts(keepsParts)
 {
     for (const Mesh& mesh : meshes)
         _vertexCount += mesh.mesh->getVertexCount();
@@ -124,13 +112,12 @@ CharacterLevels::Sources::Sources(const std::vector<Mesh>& meshes)
     {
         const SkinnedGeometry& mesh = *meshes[index].mesh;
         if (!MergedParts::accepts(mesh)) continue;
-        const auto alike =
-            std::find_if(_groups.begin(), _groups.end(),
-                         [&](const Group& group)
-                         {
-                             const Mesh& first = meshes[group.meshes.front()];
-                             return first.list == meshes[index].list && MergedParts::areAlike(*first.mesh, mesh);
-                         });
+        const auto alike = std::find_if(_groups.begin(), _groups.end(),
+                                        [&](const Group& group)
+                                        {
+                                            return group.meshes.size() < MergedParts::maxParts &&
+                                                   MergedParts::areAlike(*meshes[group.meshes.front()].mesh, mesh);
+                                        });
         Group& group = alike == _groups.end() ? _groups.emplace_back() : *alike;
         group.meshes.push_back(index);
         group.parts.push_back({meshes[index].copy, *SurfaceColor::of(*meshes[index].copy, mesh.getStateSet())});
@@ -151,7 +138,7 @@ std::vector<CharacterLevels::Made> CharacterLevels::Sources::make(const Animatio
     }
     for (const Group& group : _groups)
     {
-        const MergedParts parts(group.parts, palettes, measured.keyPoseCount, stop);
+        const MergedParts parts(group.parts, palettes, measured.keyPoseCount, stop, _keepsParts);
         std::optional<Made> ofGroup = parts.isValid() ? makeGroup(group, parts, levels) : std::nullopt;
         if (ofGroup) made.push_back(std::move(*ofGroup));
     }
@@ -210,11 +197,10 @@ void CharacterLevels::include(Merged merged)
     _merged.push_back(std::move(merged));
 }
 
-Result<std::shared_ptr<const CharacterLevels>> CharacterLevels::restored(const osg::Group& meshes,
-                                                                         const AnimationSet& set,
-                                                                         std::vector<Merged> merged, const Lists& lists)
+Result<std::shared_ptr<const CharacterLevels>>
+CharacterLevels::restored(const osg::Group& meshes, const AnimationSet& set, std::vector<Merged> merged)
 {
-    const std::shared_ptr<CharacterLevels> levels(new CharacterLevels(partsOf(meshes, lists), set));
+    const std::shared_ptr<CharacterLevels> levels(new CharacterLevels(partsOf(meshes), set));
     for (std::size_t i = 0; i < merged.size(); ++i)
         if (const Result<void> taken = levels->restore(std::move(merged[i])); !taken)
             return Error{"merged parts " + std::to_string(i) + ": " + taken.error().message};
@@ -230,11 +216,10 @@ Result<void> CharacterLevels::restore(Merged merged)
             return Error{"part " + std::to_string(part) + " of " + std::to_string(_parts.size())};
         if (isMerged(*_parts[part].mesh, std::numeric_limits<int>::max()))
             return Error{"part " + std::to_string(part) + " a second time"};
-        if (_parts[part].list != _parts[merged.parts.front()].list)
-            return Error{"part " + std::to_string(part) + ", which other outfits show"};
         first = part + 1;
     }
     if (merged.parts.empty() || merged.steps.empty()) return Error{"no parts or no levels"};
+    if (merged.parts.size() > MergedParts::maxParts) return Error{std::to_string(merged.parts.size()) + " parts"};
     int previous = LodLevels::allTriangles;
     for (const Step& step : merged.steps)
     {

@@ -29,12 +29,8 @@ public:
     static constexpr std::size_t maxParts = 256;          ///< a character of more has no such levels
     static constexpr std::size_t maxVertices = 1'000'000; ///< a character of more has no such levels
 
-    /// By mesh, in the order of forEachMesh(): which meshes are drawn for the same instances. Only these are merged.
-    /// Empty: all are.
-    using Lists = std::vector<std::size_t>;
-
     /// Creates the levels of the meshes among the group's children (see forEachMesh()) in 0.5 to 5 s.
-    CharacterLevels(const osg::Group& meshes, const AnimationSet& set, const Lists& lists = {});
+    CharacterLevels(const osg::Group& meshes, const AnimationSet& set);
 
     struct Step
     {
@@ -45,8 +41,10 @@ public:
     /// The meshes of several parts by level.
     struct Merged
     {
-        std::vector<std::size_t> parts; ///< ascending, by their order among the meshes of forEachMesh()
-        std::vector<Step> steps;        ///< by ascending levels
+        /// Ascending, by their order among the meshes of forEachMesh(). A vertex has the place of its part here, see
+        /// MergedParts::maxParts.
+        std::vector<std::size_t> parts;
+        std::vector<Step> steps; ///< by ascending levels
 
         const Step* at(int level) const; ///< null: the parts themselves
     };
@@ -58,21 +56,20 @@ public:
         osg::Vec2 metallicRoughness;
     };
     /// Without levels yet, for includeMade().
-    static std::shared_ptr<CharacterLevels> unmade(const osg::Group& meshes, const AnimationSet& set,
-                                                   const Lists& lists)
+    static std::shared_ptr<CharacterLevels> unmade(const osg::Group& meshes, const AnimationSet& set)
     {
-        return std::shared_ptr<CharacterLevels>(new CharacterLevels(partsOf(meshes, lists), set));
+        return std::shared_ptr<CharacterLevels>(new CharacterLevels(partsOf(meshes), set));
     }
     /// made: of the meshes. Creates StateSets: call it in a thread that may change those of the meshes.
     void includeMade(std::vector<Made> made);
     /// The levels that a file contains. merged: from merged() of the same meshes. They are untrusted, except for the
     /// steps' meshes: an error names the first element that does not fit.
     static Result<std::shared_ptr<const CharacterLevels>> restored(const osg::Group& meshes, const AnimationSet& set,
-                                                                   std::vector<Merged> merged, const Lists& lists = {});
+                                                                   std::vector<Merged> merged);
     const std::vector<Merged>& merged() const { return _merged; }
 
-    /// True if the group has the same visible meshes with the same vertices, primitives, StateSets and lists.
-    bool isOf(const osg::Group& meshes, const AnimationSet& set, const Lists& lists = {}) const;
+    /// True if the group has the same visible meshes with the same vertices, primitives and StateSets.
+    bool isOf(const osg::Group& meshes, const AnimationSet& set) const;
 
     /// The finest and the coarsest level; allTriangles: there are none.
     int finest() const { return _finest; }
@@ -82,9 +79,8 @@ public:
     /// True if a merged mesh shows the part at the level.
     bool isMerged(const SkinnedGeometry& part, int level) const;
 
-    /// function(const SkinnedGeometry& mesh, const SkinnedGeometry& part), for the meshes to draw at a level in place
-    /// of the group's: merged ones with all their triangles, and parts at the level. part: the first one that the mesh
-    /// shows. meshes: isOf() is true for it.
+    /// function(const SkinnedGeometry&), for the meshes to draw at a level in place of the group's: merged ones with
+    /// all their triangles, and parts at the level. meshes: isOf() is true for it.
     template <typename Function>
     void forEachMeshAt(int level, const osg::Group& meshes, Function function) const;
 
@@ -110,11 +106,10 @@ private:
         std::vector<Primitives> primitives;
         osg::ref_ptr<const osg::StateSet> state;
         osg::Node::NodeMask mask;
-        std::size_t list = 0;
     };
     using Indices = std::vector<std::size_t>; ///< of parts
 
-    static std::vector<Part> partsOf(const osg::Group& meshes, const Lists& lists);
+    static std::vector<Part> partsOf(const osg::Group& meshes);
     CharacterLevels(std::vector<Part> parts, const AnimationSet& set) : _set(&set), _parts(std::move(parts)) {}
     Result<void> restore(Merged merged);
     void include(Merged merged);
@@ -136,10 +131,10 @@ public:
     {
         const SkinnedGeometry* mesh;
         osg::ref_ptr<const SkinnedGeometry> copy;
-        std::size_t list = 0; ///< see Lists
     };
     /// meshes: those of forEachMesh(), in its order.
-    explicit Sources(const std::vector<Mesh>& meshes);
+    /// keepsParts: see MergedParts.
+    explicit Sources(const std::vector<Mesh>& meshes, bool keepsParts = false);
 
     bool isEmpty() const { return _groups.empty(); } ///< nothing can be merged
     using Levels = std::vector<std::shared_ptr<const LodLevels>>;
@@ -156,6 +151,7 @@ private:
     static std::optional<Made> makeGroup(const Group& group, const MergedParts& parts, const Levels& levels);
 
     std::vector<Group> _groups; ///< each of one material
+    const bool _keepsParts;
     std::size_t _vertexCount = 0;
 };
 
@@ -165,10 +161,10 @@ void CharacterLevels::forEachMeshAt(int level, const osg::Group& meshes, Functio
     forEachMesh(meshes,
                 [&](const SkinnedGeometry& mesh)
                 {
-                    if (!isMerged(mesh, level)) function(mesh, mesh);
+                    if (!isMerged(mesh, level)) function(mesh);
                 });
     for (const Merged& merged : _merged)
-        if (const Step* step = merged.at(level)) function(*step->mesh, *_parts[merged.parts.front()].mesh);
+        if (const Step* step = merged.at(level)) function(*step->mesh);
 }
 
 } // namespace osgGpuAnimation

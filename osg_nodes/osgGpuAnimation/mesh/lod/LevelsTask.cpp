@@ -173,7 +173,7 @@ bool LevelsTask::areMissing(const osg::Group& meshes)
 }
 
 std::shared_ptr<LevelsTask> LevelsTask::of(const osg::Group& meshes, const std::shared_ptr<const AnimationSet>& set,
-                                           bool isMerged, const CharacterLevels::Lists& lists)
+                                           bool isMerged, bool keepsParts)
 {
     static std::mutex mutex;
     static std::vector<std::weak_ptr<LevelsTask>> tasks;
@@ -183,21 +183,19 @@ std::shared_ptr<LevelsTask> LevelsTask::of(const osg::Group& meshes, const std::
     for (const std::weak_ptr<LevelsTask>& known : tasks)
     {
         const std::shared_ptr<LevelsTask> task = known.lock();
-        if (task && task->isOf(meshes, *set, isMerged, lists)) return task;
+        if (task && task->isOf(meshes, *set, isMerged)) return task;
     }
-    const std::shared_ptr<LevelsTask> task(new LevelsTask(meshes, set, isMerged, lists));
+    const std::shared_ptr<LevelsTask> task(new LevelsTask(meshes, set, isMerged, keepsParts));
     tasks.push_back(task);
     Worker<Work>::add(task->_work);
     return task;
 }
 
 LevelsTask::LevelsTask(const osg::Group& meshes, const std::shared_ptr<const AnimationSet>& set, bool isMerged,
-                       const CharacterLevels::Lists& lists)
-    : _set(set), _merged(isMerged ? CharacterLevels::unmade(meshes, *set, lists) : nullptr),
-      _work(std::make_shared<Work>(set))
+                       bool keepsParts)
+    : _set(set), _merged(isMerged ? CharacterLevels::unmade(meshes, *set) : nullptr), _work(std::make_shared<Work>(set))
 {
     std::vector<CharacterLevels::Sources::Mesh> sources;
-    std::size_t number = 0;
     forEachMeshWithLevels(meshes,
                           [&](const SkinnedGeometry& mesh)
                           {
@@ -212,11 +210,10 @@ LevelsTask::LevelsTask(const osg::Group& meshes, const std::shared_ptr<const Ani
                               _meshes.push_back({&mesh, MeshDetail::forgetCount(mesh),
                                                  known ? nullptr : std::make_shared<LodLevels>(mesh)});
                               _work->meshes.push_back({copy, levels, isMissing});
-                              sources.push_back({&mesh, copy, number < lists.size() ? lists[number] : 0});
-                              ++number;
+                              sources.push_back({&mesh, copy});
                           });
     if (!isMerged) return;
-    _work->sources.emplace(sources);
+    _work->sources.emplace(sources, keepsParts);
     if (_work->sources->isEmpty()) _work->sources.reset();
 }
 
@@ -244,10 +241,9 @@ bool LevelsTask::Mesh::isOf(const SkinnedGeometry& present) const
     return levels && &present == mesh && forgetCount == MeshDetail::forgetCount(present) && levels->isOf(present);
 }
 
-bool LevelsTask::isOf(const osg::Group& meshes, const AnimationSet& set, bool isMerged,
-                      const CharacterLevels::Lists& lists) const
+bool LevelsTask::isOf(const osg::Group& meshes, const AnimationSet& set, bool isMerged) const
 {
-    if (&set != _set.get() || (isMerged && !(_merged && _merged->isOf(meshes, set, lists)))) return false;
+    if (&set != _set.get() || (isMerged && !(_merged && _merged->isOf(meshes, set)))) return false;
     bool isOf = true;
     forEachMeshWithLevels(meshes,
                           [&](const SkinnedGeometry& mesh)

@@ -19,7 +19,7 @@ namespace osgGpuAnimation
 /// after the other, from copies of the meshes. Nodes with the same meshes share a task. The thread gives up soon after
 /// the last owner of a task has dropped it, and at the end of the process.
 ///
-///     std::shared_ptr<LevelsTask> task = LevelsTask::of(character, set, false);
+///     std::shared_ptr<LevelsTask> task = LevelsTask::of(character, set, false, false);
 ///     …
 ///     if (task->isDone()) task->take();
 class LevelsTask : public std::enable_shared_from_this<LevelsTask>
@@ -31,14 +31,13 @@ public:
     static bool areMissing(const osg::Group& meshes);
 
     /// The task for the missing levels of the meshes: another node's, or a new one. isMerged: with CharacterLevels.
-    /// set: not null. lists: for these.
+    /// set: not null. keepsParts: see MergedParts.
     static std::shared_ptr<LevelsTask> of(const osg::Group& meshes, const std::shared_ptr<const AnimationSet>& set,
-                                          bool isMerged, const CharacterLevels::Lists& lists = {});
+                                          bool isMerged, bool keepsParts);
     ~LevelsTask();
 
     /// True if the task makes all levels that the present meshes are missing.
-    bool isOf(const osg::Group& meshes, const AnimationSet& set, bool isMerged,
-              const CharacterLevels::Lists& lists = {}) const;
+    bool isOf(const osg::Group& meshes, const AnimationSet& set, bool isMerged) const;
 
     bool isDone() const;
     /// Blocks until the task is done. A task that the thread has not begun is done by the caller.
@@ -59,7 +58,7 @@ private:
     };
 
     LevelsTask(const osg::Group& meshes, const std::shared_ptr<const AnimationSet>& set, bool isMerged,
-               const CharacterLevels::Lists& lists);
+               bool keepsParts);
     std::shared_ptr<LodLevels> levelsLike(const SkinnedGeometry& mesh) const;
 
     std::shared_ptr<const AnimationSet> _set;

@@ -4,12 +4,16 @@
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/mesh/lod/LodLevels.h>
 
+#include <layout.glsl>
+
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <osgUtil/MeshOptimizers>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 namespace osgGpuAnimation
 {
@@ -55,13 +59,14 @@ bool MergedParts::areAlike(const SkinnedGeometry& part, const SkinnedGeometry& o
            osgGpuAnimation::areAlike(*part.getStateSet(), *other.getStateSet());
 }
 
-MergedParts::MergedParts(Parts parts, const Palettes& palettes, std::size_t keyPoseCount, const std::atomic<bool>* stop)
+MergedParts::MergedParts(Parts parts, const Palettes& palettes, std::size_t keyPoseCount, const std::atomic<bool>* stop,
+                         bool keepsParts)
     : _parts(std::move(parts)), _palettes(palettes)
 {
     _surface.keyPoses = keyPoseCount;
     _surface.stop = stop;
     _surface.isTwoSided = _parts.front().color.isTwoSided();
-    addSurface();
+    addSurface(keepsParts);
     addTriangles();
     if (_surface.vertexCount() > maxVertices || _indices.size() > 3 * maxTriangles || _surface.isStopped()) return;
     for (const std::vector<glm::vec3>& pose : _surface.poses)
@@ -74,7 +79,7 @@ MergedParts::MergedParts(Parts parts, const Palettes& palettes, std::size_t keyP
     _isValid = size() > 0.0;
 }
 
-void MergedParts::addSurface()
+void MergedParts::addSurface(bool keepsParts)
 {
     std::vector<glm::dvec3> ofPart;
     for (const std::vector<AffineMatrix>& palette : _palettes)
@@ -86,6 +91,7 @@ void MergedParts::addSurface()
             part->computePositions(palette, ofPart);
             ofPart.resize(part->getVertexCount(), glm::dvec3(0.0)); // none if the vertices are no osg::Vec3Array
             pose.insert(pose.end(), ofPart.begin(), ofPart.end());
+            if (keepsParts && _surface.poses.size() == 1) _surface.pieces.resize(pose.size(), _firstOf.back());
         }
         if (pose.size() > maxVertices || _surface.isStopped()) return;
     }
@@ -183,8 +189,37 @@ glm::mat3 MergedParts::toFirstPose(std::uint32_t vertex, std::size_t pose) const
     return isPlaced(sum) ? turn : glm::mat3(0.0f);
 }
 
-osg::ref_ptr<SkinnedGeometry> MergedParts::geometryOf(const CoarseMesh& mesh) const
+/// The mesh with a vertex for each part that has a triangle there. A triangle between two parts belongs to the part of
+/// most of its vertices. outParts: by vertex.
+CoarseMesh MergedParts::splitByParts(const CoarseMesh& mesh, osg::FloatArray& outParts) const
 {
+    CoarseMesh split;
+    std::map<std::pair<std::uint32_t, std::size_t>, std::uint32_t> known; ///< by vertex and part
+    for (std::size_t triangle = 0; triangle + 2 < mesh.indices.size(); triangle += 3)
+    {
+        const std::uint32_t* corners = &mesh.indices[triangle];
+        const auto partOf = [&](int corner) { return sourceOf(mesh.sources[corners[corner]]).part; };
+        const std::size_t part = partOf(1) == partOf(2) ? partOf(1) : partOf(0);
+        for (int corner = 0; corner < 3; ++corner)
+        {
+            const std::uint32_t vertex = corners[corner];
+            const auto [place, isNew] =
+                known.emplace(std::pair(vertex, part), static_cast<std::uint32_t>(split.sources.size()));
+            split.indices.push_back(place->second);
+            if (!isNew) continue;
+            split.sources.push_back(mesh.sources[vertex]);
+            split.positions.push_back(mesh.positions[vertex]);
+            split.colors.push_back(mesh.colors[vertex]);
+            outParts.push_back(static_cast<float>(part));
+        }
+    }
+    return split;
+}
+
+osg::ref_ptr<SkinnedGeometry> MergedParts::geometryOf(const CoarseMesh& merged) const
+{
+    osg::ref_ptr<osg::FloatArray> parts = new osg::FloatArray;
+    const CoarseMesh mesh = splitByParts(merged, *parts);
     osg::ref_ptr<osg::Vec3Array> bindPositions = new osg::Vec3Array;
     osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array;
     for (const glm::dvec3& position : bindPositionsOf(mesh))
@@ -195,6 +230,7 @@ osg::ref_ptr<SkinnedGeometry> MergedParts::geometryOf(const CoarseMesh& mesh) co
     geometry->setVertexArray(bindPositions);
     geometry->setColorArray(colors, osg::Array::BIND_PER_VERTEX);
     setInfluences(mesh, *geometry);
+    geometry->setVertexAttribArray(POSE_PART_LOCATION, parts, osg::Array::BIND_PER_VERTEX);
     osg::ref_ptr<osg::DrawElementsUShort> elements = new osg::DrawElementsUShort(GL_TRIANGLES);
     elements->assign(mesh.indices.begin(), mesh.indices.end());
     geometry->addPrimitiveSet(elements);

@@ -37,6 +37,9 @@ public:
     };
     using Parts = std::vector<Part>;
     using Palettes = std::vector<std::vector<AffineMatrix>>;
+    /// Vertices have the place of their triangle's part as the vertex attribute "posePart": outfits hide parts by one
+    /// bit.
+    static constexpr std::size_t maxParts = 32;
     static constexpr std::size_t maxVertices = 20'000;  ///< of the parts together
     static constexpr std::size_t maxTriangles = 40'000; ///< of the parts together
 
@@ -48,8 +51,9 @@ public:
 
     /// parts: of meshes that are accepted and alike; at least one. palettes: of the poses in which errors are measured;
     /// at least one; they must outlive this object. keyPoseCount: of the first of them, see PosedSurface. stop: see
-    /// PosedSurface.
-    MergedParts(Parts parts, const Palettes& palettes, std::size_t keyPoseCount, const std::atomic<bool>* stop);
+    /// PosedSurface. keepsParts: their vertices stay apart, so that outfits may hide each part.
+    MergedParts(Parts parts, const Palettes& palettes, std::size_t keyPoseCount, const std::atomic<bool>* stop,
+                bool keepsParts = false);
 
     /// False: too many vertices or triangles, no extent, or positions that are not finite.
     bool isValid() const { return _isValid; }
@@ -82,11 +86,12 @@ private:
     };
 
     Source sourceOf(std::uint32_t vertex) const;
-    void addSurface();
+    void addSurface(bool keepsParts);
     void addTriangles();
     glm::dmat4 matrixOf(std::uint32_t vertex, const std::vector<AffineMatrix>& palette) const;
     std::vector<glm::dvec3> bindPositionsOf(const CoarseMesh& mesh) const;
     void setInfluences(const CoarseMesh& mesh, SkinnedGeometry& geometry) const;
+    CoarseMesh splitByParts(const CoarseMesh& mesh, osg::FloatArray& outParts) const;
 
     const Parts _parts;
     const Palettes& _palettes;

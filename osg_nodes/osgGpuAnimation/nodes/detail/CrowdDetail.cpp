@@ -27,11 +27,6 @@ const osg::Group& CrowdDetail::drawnMeshes(const AnimatedCrowd& crowd)
     return crowd._meshes.drawn();
 }
 
-const std::vector<std::size_t>& CrowdDetail::lists(const AnimatedCrowd& crowd)
-{
-    return crowd._meshes.lists();
-}
-
 const std::shared_ptr<const CharacterLevels>& CrowdDetail::levels(const AnimatedCrowd& crowd)
 {
     return crowd._meshes._levels;
@@ -40,6 +35,7 @@ const std::shared_ptr<const CharacterLevels>& CrowdDetail::levels(const Animated
 void CrowdDetail::setLevels(AnimatedCrowd& crowd, std::shared_ptr<const CharacterLevels> levels)
 {
     crowd._meshes._levels = std::move(levels);
+    crowd._meshes.showLevels();
 }
 
 } // namespace osgGpuAnimation

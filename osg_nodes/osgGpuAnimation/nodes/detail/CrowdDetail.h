@@ -3,9 +3,7 @@
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
-#include <cstddef>
 #include <memory>
-#include <vector>
 
 namespace osgGpuAnimation
 {
@@ -25,7 +23,6 @@ struct CrowdDetail
 
     /// The meshes that it draws: its own, or those of its outfits.
     static const osg::Group& drawnMeshes(const AnimatedCrowd& crowd);
-    static const std::vector<std::size_t>& lists(const AnimatedCrowd& crowd); ///< see CharacterLevels::Lists
 
     /// The levels of detail of the character as a whole. Null: there was no pixel error yet, or they are being made.
     /// setPixelError() requests them unless those that are set match the meshes; a pixel error of 0 keeps them.

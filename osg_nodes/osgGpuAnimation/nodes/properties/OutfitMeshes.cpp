@@ -210,7 +210,7 @@ void OutfitMeshes::remove(const osg::Group& crowd, const Outfit* outfit)
     make(crowd);
 }
 
-void OutfitMeshes::update(const osg::Group& crowd)
+bool OutfitMeshes::update(const osg::Group& crowd)
 {
     std::size_t count = 0;
     bool isSame = true;
@@ -222,7 +222,9 @@ void OutfitMeshes::update(const osg::Group& crowd)
                     isSame = isSame && count < _sources.size() && _sources[count] == present;
                     ++count;
                 });
-    if (!isSame || count != _sources.size()) make(crowd);
+    if (isSame && count == _sources.size()) return false;
+    make(crowd);
+    return true;
 }
 
 /// function(Number, const Outfit&), for each outfit.
@@ -296,8 +298,7 @@ void OutfitMeshes::show(SkinnedGeometry& mesh, bool isOwn, const States& states)
         copy->setNodeMask(mesh.getNodeMask() != 0 ? mesh.getNodeMask() : ~0u);
         _meshes->addChild(copy);
         const auto known = std::find(_lists.lists.begin(), _lists.lists.end(), outfits);
-        _lists.ofMeshes.push_back(static_cast<std::size_t>(known - _lists.lists.begin()));
-        _lists.listOf[copy] = _lists.ofMeshes.back();
+        _lists.meshes[copy].list = static_cast<std::size_t>(known - _lists.lists.begin());
         if (known == _lists.lists.end()) _lists.lists.push_back(outfits);
         const bool isAsInCrowd = isOwn && state == mesh.getStateSet() && mesh.getNodeMask() != 0;
         _shown.push_back({&mesh, copy, isAsInCrowd, outfits});
@@ -351,8 +352,7 @@ void OutfitMeshes::make(const osg::Group& crowd)
     _meshes->removeChildren(0, _meshes->getNumChildren());
     _sources.clear();
     _shown.clear();
-    _lists.ofMeshes.clear();
-    _lists.listOf.clear();
+    _lists.meshes.clear();
     // The list of all instances has the numbers that they may have: lists are equal if they have the same instances.
     _lists.lists = {OutfitLists::Outfits(1)};
     forEachOutfit([&](Number number, const Outfit&) { _lists.lists.front().set(number); });
@@ -377,6 +377,40 @@ void OutfitMeshes::make(const osg::Group& crowd)
     showProps();
     _before.clear();
     _statesBefore.clear();
+}
+
+OutfitLists::Mesh OutfitMeshes::mergedMesh(const std::vector<std::size_t>& parts) const
+{
+    const auto listOf = [&](std::size_t part) { return _lists.meshes.at(_shown[part].copy).list; };
+    const auto isOfFirst = [&](std::size_t part) { return listOf(part) == listOf(parts.front()); };
+    if (std::all_of(parts.begin(), parts.end(), isOfFirst)) return {listOf(parts.front()), nullptr};
+    const osg::ref_ptr<osg::Uniform> uniform =
+        new osg::Uniform(osg::Uniform::UNSIGNED_INT_VEC4, "poseOutfitParts", POSE_OUTFIT_VECTORS);
+    for (std::size_t vector = 0; vector < POSE_OUTFIT_VECTORS; ++vector)
+    {
+        unsigned int shown[POSE_OUTFITS_PER_VECTOR] = {};
+        for (std::size_t i = 0; i < POSE_OUTFITS_PER_VECTOR; ++i)
+        {
+            const std::size_t number = vector * POSE_OUTFITS_PER_VECTOR + i;
+            for (std::size_t part = 0; part < parts.size() && number < _lists.numberCount; ++part)
+                if (_shown[parts[part]].outfits[number]) shown[i] |= 1u << part;
+        }
+        uniform->setElement(static_cast<unsigned int>(vector), shown[0], shown[1], shown[2], shown[3]);
+    }
+    OutfitLists::Mesh mesh{OutfitLists::all, new osg::StateSet};
+    mesh.parts->addUniform(uniform);
+    mesh.parts->setDefine("POSE_OUTFIT_PARTS");
+    return mesh;
+}
+
+void OutfitMeshes::showLevels(const CharacterLevels* levels)
+{
+    for (auto mesh = _lists.meshes.begin(); mesh != _lists.meshes.end();)
+        mesh = _meshes->containsNode(mesh->first) ? std::next(mesh) : _lists.meshes.erase(mesh);
+    if (!levels) return;
+    for (const CharacterLevels::Merged& merged : levels->merged())
+        for (const CharacterLevels::Step& step : merged.steps)
+            _lists.meshes[step.mesh] = mergedMesh(merged.parts);
 }
 
 NodesOfOutfits OutfitMeshes::nodesOfOutfits() const

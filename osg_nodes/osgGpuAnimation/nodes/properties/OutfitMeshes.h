@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/frame/crowd/InstanceVisits.h>
 #include <osgGpuAnimation/frame/crowd/OutfitLists.h>
+#include <osgGpuAnimation/mesh/lod/CharacterLevels.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/Outfit.h>
 
@@ -41,8 +42,10 @@ public:
     /// Errors: those of add(); there is no such outfit.
     Result<void> replace(const osg::Group& crowd, const AnimationSet& set, const Outfit* outfit, Outfit* by);
     void remove(const osg::Group& crowd, const Outfit* outfit);
-    /// Makes the meshes unless the crowd still has those of the last call.
-    void update(const osg::Group& crowd);
+    /// Makes the meshes unless the crowd still has those of the last call. True: it made some.
+    bool update(const osg::Group& crowd);
+    /// Lets merged meshes show the parts of each outfit. levels: of meshes(); null: none.
+    void showLevels(const CharacterLevels* levels);
 
     Number numberOf(const Outfit* outfit) const; ///< 0: there is no such outfit
     Outfit* outfit(Number number) const;         ///< null: 0
@@ -94,6 +97,7 @@ private:
     void showProps();
     void show(SkinnedGeometry& mesh, bool isOwn, const States& states);
     osg::ref_ptr<SkinnedGeometry> copyOf(SkinnedGeometry& mesh, osg::StateSet* state) const;
+    OutfitLists::Mesh mergedMesh(const std::vector<std::size_t>& parts) const;
     osg::StateSet* stateFor(osg::StateSet* state, const Outfit* outfit);
     template <typename Function>
     void forEachOutfit(Function function) const;

@@ -24,7 +24,7 @@ constexpr const char* usage = R"(osggpuanim_benchmark [options] OUTPUT_FOLDER FI
     measures this kit against osgAnimation with the characters of glTF files, prints a table and writes benchmark.json
     into the folder
     --quick           fewer characters and rounds
-    --only PART       pose, samples, constraints, chunks, compact, depth, frames, crowd, field, mixed, pictures, draws,
+    --only PART       pose, samples, constraints, chunks, compact, depth, frames, crowd, outfits, field, mixed, pictures, draws,
                       shading, start, memory or load; several times, too
     --return-memory   leave it to glibc whether freed memory goes back to the kernel
 )";

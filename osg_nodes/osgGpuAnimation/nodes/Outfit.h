@@ -35,10 +35,11 @@ public:
     /// A rigid model on a joint.
     struct Prop
     {
-        std::string joint;
-        osg::ref_ptr<osg::Node> node;
-        osg::Matrixd toJoint; ///< from the node's space to the joint's
+        std::string joint;            ///< its name
+        osg::ref_ptr<osg::Node> node; ///< with geometries
+        osg::Matrixd toJoint;         ///< from the node's space to the joint's
 
+        /// True if the props are the same part.
         bool operator==(const Prop& other) const
         {
             return joint == other.joint && node == other.node && toJoint == other.toJoint;

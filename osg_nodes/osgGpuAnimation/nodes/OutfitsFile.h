@@ -16,9 +16,9 @@ namespace osgGpuAnimation
 /// An outfit with the instances that wear it.
 struct OutfitShare
 {
-    osg::ref_ptr<Outfit> outfit;
-    double share = 1.0;       ///< of the instances, relative to those of the other outfits; at least 0
-    osg::Vec3d size{1, 1, 1}; ///< scales of its instances along X, Y and Z of their own space, each above 0
+    osg::ref_ptr<Outfit> outfit; ///< for CrowdOutfits::add()
+    double share = 1.0;          ///< of the instances, relative to those of the other outfits; at least 0
+    osg::Vec3d size{1, 1, 1};    ///< scales of its instances along X, Y and Z of their own space, each above 0
 };
 
 /// What reads the pictures and props of an outfits file: the kit itself reads no files of others. Null: a file that

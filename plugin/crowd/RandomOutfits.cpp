@@ -5,6 +5,8 @@
 
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 
+#include <osgDB/FileNameUtils>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,6 +20,23 @@ namespace osgGpuAnimation::crowd
 
 namespace
 {
+
+/// The joint that carries the part: a node with a mesh may be a joint itself, below the hand that holds it.
+int carrierOf(const Skeleton& skeleton, int joint, const SkinnedGeometry& part)
+{
+    if (joint < 0) return joint;
+    const Joint& own = skeleton.joint(static_cast<std::size_t>(joint));
+    return own.name == part.getName() && own.parent >= 0 ? own.parent : joint;
+}
+
+/// True for materials that no tint suits.
+bool isOfBodies(const std::string& material)
+{
+    const std::string name = osgDB::convertToLowerCase(material);
+    constexpr const char* words[] = {"skin", "face", "head", "eye", "hair", "teeth", "mouth"};
+    return std::any_of(std::begin(words), std::end(words),
+                       [&](const char* word) { return name.find(word) != std::string::npos; });
+}
 
 /// hue: in [0, 1). saturation, value: in [0, 1].
 osg::Vec4 colorOf(float hue, float saturation, float value)
@@ -42,7 +61,8 @@ std::vector<OutfitShare> randomOutfits(const AnimatedCrowd& crowd, std::uint32_t
                 {
                     const auto entry = static_cast<std::size_t>(mesh.getRigidEntry()); // -1 becomes huge
                     if (entry < palette.size() && !mesh.getName().empty())
-                        partsOfJoint[palette[entry].joint].insert(mesh.getName());
+                        partsOfJoint[carrierOf(crowd.getAnimationSet().skeleton(), palette[entry].joint, mesh)].insert(
+                            mesh.getName());
                     if (mesh.getStateSet() && !mesh.getStateSet()->getName().empty())
                         materials.insert(mesh.getStateSet()->getName());
                 });
@@ -60,7 +80,7 @@ std::vector<OutfitShare> randomOutfits(const AnimatedCrowd& crowd, std::uint32_t
                 outfits.back().outfit->setVisible(part, chosen-- == 0);
         }
         for (const std::string& material : materials)
-            if (materials.size() > 1)
+            if (materials.size() > 1 && !isOfBodies(material))
                 outfits.back().outfit->setColor(material,
                                                 colorOf(share(), 0.15f + 0.35f * share(), 0.75f + 0.25f * share()));
     }

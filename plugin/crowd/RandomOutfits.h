@@ -13,7 +13,8 @@ namespace osgGpuAnimation::crowd
 constexpr std::size_t randomOutfitCount = 24;
 
 /// Outfits for the option `outfits=random`. Rigid parts on one joint exclude each other: an outfit shows one of them or
-/// none. If the crowd has several materials, each gets a pale colour of a random hue.
+/// none. If the crowd has several materials, each gets a pale colour of a random hue, but those whose names speak of
+/// skin, faces, eyes or hair.
 std::vector<OutfitShare> randomOutfits(const AnimatedCrowd& crowd, std::uint32_t seed);
 
 } // namespace osgGpuAnimation::crowd

@@ -198,6 +198,39 @@ TEST_F(CrowdPluginTest, takesOptions)
     EXPECT_EQ(reader.readNode("fox.glb", nullptr).status(), Read::FILE_NOT_HANDLED);
 }
 
+TEST_F(CrowdPluginTest, dressesInstancesByAFileOrAtRandom)
+{
+    const std::string people = OSGGPUANIMATION_SCENES "/People.glb.10x10.crowd";
+    const osg::ref_ptr<AnimatedCrowd> byFile = readCrowd(people, "outfits=People.outfits.json"); // beside the model
+    ASSERT_TRUE(byFile);
+    EXPECT_EQ(byFile->getOutfits().getList().size(), 24u);
+    std::set<std::string> worn, sizes;
+    const CrowdInstances& instances = CrowdDetail::instances(*byFile);
+    for (std::size_t i = 0; i < instances.size(); ++i)
+    {
+        ASSERT_NE(byFile->getOutfit(instances.handleOf(i)), nullptr);
+        worn.insert(byFile->getOutfit(instances.handleOf(i))->getName());
+        sizes.insert(std::to_string(instances.scale(i)).substr(0, 4));
+    }
+    EXPECT_GT(worn.size(), 12u);
+    EXPECT_EQ(sizes, (std::set<std::string>{"0.75", "1.00", "1.10"}));
+
+    const osg::ref_ptr<AnimatedCrowd> atRandom = readCrowd(people, "outfits=random");
+    ASSERT_TRUE(atRandom);
+    ASSERT_EQ(atRandom->getOutfits().getList().size(), 24u);
+    for (const osg::ref_ptr<Outfit>& outfit : atRandom->getOutfits().getList())
+    {
+        int held = 0; // of the rigid parts of the left hand
+        for (const char* part : {"Lantern", "Basket", "Staff"})
+            if (const auto wish = outfit->getVisibility().find(part); wish != outfit->getVisibility().end())
+                held += wish->second;
+        EXPECT_LE(held, 1);
+        EXPECT_EQ(outfit->getColors().count("Skin"), 0u);
+        EXPECT_EQ(outfit->getColors().count("Coat"), 1u);
+    }
+    expectError("arm.gltf.2x2.crowd", "outfits=none.json", "none.json: there is no such file");
+}
+
 TEST_F(CrowdPluginTest, handsOtherWordsToTheModelsReaderAsTheyAre)
 {
     /// Records the options that it receives; it finds no file.

@@ -72,6 +72,7 @@ public:
         }
         while (_fieldInstances.size() < fieldCount)
             _fieldInstances.push_back(addTo(*_field));
+        _field->getMeshes().waitForLevels(); // they count as memory from the beginning
     }
 
     void change()

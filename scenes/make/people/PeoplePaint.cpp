@@ -148,12 +148,18 @@ Painter cap(double fold)
     };
 }
 
+// Metres from the shoulder to the point, along the arm at rest.
+double alongArm(const dvec3& point)
+{
+    const dvec3 shoulder(0.150, 1.130, -0.010);
+    return glm::dot(point - shoulder, glm::normalize(dvec3(0.301, -0.301, 0.0)));
+}
+
 dvec3 sleeve(const SurfacePoint& point)
 {
     const dvec3& p = point.position;
     if (point.v > 0.86) return brush::cloth(lined, p);
-    const dvec3 shoulder(0.150, 1.130, -0.010);
-    const double along = glm::dot(p - shoulder, glm::normalize(dvec3(0.301, -0.301, 0.0)));
+    const double along = alongArm(p);
     dvec3 colour = wool;
     colour = brush::over(colour, seamed * 0.8, brush::inside(0.386 - along));
     colour = brush::over(colour, light, brush::line(along - 0.415, 0.0035));
@@ -164,8 +170,7 @@ dvec3 jacketSleeve(const SurfacePoint& point)
 {
     const dvec3& p = point.position;
     if (point.v > 0.86) return brush::cloth(lined, p);
-    const dvec3 shoulder(0.150, 1.130, -0.010);
-    const double along = glm::dot(p - shoulder, glm::normalize(dvec3(0.301, -0.301, 0.0)));
+    const double along = alongArm(p);
     if (along > 0.386)
         return brush::cloth(seamed * (1.05 + 0.12 * std::sin(point.u * glm::two_pi<double>() * 26.0)), p);
     dvec3 colour = wool;
@@ -181,8 +186,7 @@ dvec3 robeSleeve(const SurfacePoint& point)
 {
     const dvec3& p = point.position;
     if (point.v > 0.86) return brush::cloth(lined, p);
-    const dvec3 shoulder(0.150, 1.130, -0.010);
-    const double along = glm::dot(p - shoulder, glm::normalize(dvec3(0.301, -0.301, 0.0)));
+    const double along = alongArm(p);
     dvec3 colour = brush::over(wool, seamed * 0.75, brush::inside(0.386 - along));
     for (double edge : {0.394, 0.436})
         colour = brush::over(colour, light, brush::line(along - edge, 0.003));

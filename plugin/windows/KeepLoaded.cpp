@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Part of each plugin on Windows: OSG unloads its plugins at its end, when scenes that have their code may exist.
-#define WIN32_LEAN_AND_MEAN
 #include <windows.h>
 
 namespace

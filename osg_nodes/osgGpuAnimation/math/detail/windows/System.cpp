@@ -9,7 +9,6 @@
 #include <sys/stat.h>
 #include <system_error>
 
-#define WIN32_LEAN_AND_MEAN
 #include <windows.h>
 
 namespace osgGpuAnimation::system

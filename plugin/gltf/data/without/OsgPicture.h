@@ -7,6 +7,8 @@
 #include <osgDB/Registry>
 
 #include <sstream>
+#include <string>
+#include <vector>
 
 namespace osgGpuAnimation::gltf
 {
@@ -19,7 +21,7 @@ inline Result<osg::ref_ptr<osg::Image>> decodeByOsg(const std::vector<unsigned c
     osgDB::ReaderWriter* const reader = osgDB::Registry::instance()->getReaderWriterForExtension(format);
     if (!reader) return missingLibrary("the picture", std::string(library) + " or OSG's plugin osgdb_" + format);
     std::istringstream stream(std::string(bytes.begin(), bytes.end()));
-    const osgDB::ReaderWriter::ReadResult read = reader->readImage(stream);
+    osgDB::ReaderWriter::ReadResult read = reader->readImage(stream);
     const osg::ref_ptr<osg::Image> image = read.getImage();
     if (!read.validImage() || !image->data()) return damagedPicture();
     image->setInternalTextureFormat(static_cast<GLint>(image->getPixelFormat()));

@@ -4,7 +4,7 @@
 set(CPACK_PACKAGE_NAME osggpuanimation)
 set(CPACK_PACKAGE_VENDOR "the osgGpuAnimation authors")
 set(CPACK_PACKAGE_CONTACT "the osgGpuAnimation authors")
-set(CPACK_RESOURCE_FILE_LICENSE ${CMAKE_SOURCE_DIR}/LICENSE)
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 set(CPACK_VERBATIM_VARIABLES ON)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_GENERATOR DEB)
@@ -31,8 +31,8 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "GPU skeletal animation for OpenSceneGraph: headers and CMake package
  For find_package(osgGpuAnimation) and #include <osgGpuAnimation/nodes/AnimatedCharacter.h>.")
 
-install(FILES ${CMAKE_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libosggpuanimation0
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libosggpuanimation0
         RENAME copyright COMPONENT runtime)
-install(FILES ${CMAKE_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libosggpuanimation-dev
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libosggpuanimation-dev
         RENAME copyright COMPONENT development)
 include(CPack)

@@ -6,9 +6,10 @@
 # already is kept and used again. The first time takes 40 minutes on two processors. Exit status 0: the tests passed.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../setup.sh"
+source "$root/tests/ports/sources.sh"
 
 folder=$root/build-osg
-source=$folder/source
+source=$folder/sources/openscenegraph
 osg=$folder/osg
 build=$folder/kit
 # Tests that compare with what this OSG lacks or does otherwise.
@@ -32,20 +33,6 @@ without=(
     FirstDrawGLTest.theFirstFrame ReadmeStartGLTest.aSceneIsCompiled
 )
 
-fetch_source()
-{
-    local options=(-o "Dir::Etc::SourceList=$folder/sources.list" -o Dir::Etc::SourceParts=/dev/null
-        -o "Dir::State::Lists=$folder/lists")
-    mkdir -p "$folder/lists/partial"
-    apt-get indextargets --format 'deb-src $(REPO_URI) $(RELEASE) $(COMPONENT)' 'Created-By: Packages' 'Origin: Debian' |
-        grep ' main$' | sort -u >"$folder/sources.list"
-    apt-get "${options[@]}" update -q
-    rm -rf "$folder/fetched"
-    mkdir "$folder/fetched"
-    (cd "$folder/fetched" && apt-get "${options[@]}" source -q openscenegraph)
-    mv "$folder"/fetched/openscenegraph-* "$source"
-}
-
 # The libraries that the kit links and the plugins that its tests need.
 build_osg()
 {
@@ -65,7 +52,7 @@ build_osg()
 
 install_missing "${view_packages[@]}" "${test_packages[@]}" libx11-dev libxrandr-dev
 mkdir -p "$folder"
-[ -d "$source" ] || fetch_source
+fetch_sources openscenegraph
 [ -d "$osg/lib" ] || build_osg
 export OSG_DIR=$osg LD_LIBRARY_PATH=$osg/lib
 configure_release -DBUILD_TESTING=ON

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: MIT
-# For `source`, after tests/setup.sh and with $folder set: fetch_sources PACKAGE... unpacks Debian's source packages of
-# this release, without later updates, which not every mirror has, as $folder/sources/PACKAGE, unless they are there.
+# For `source`: fetch_sources FOLDER PACKAGE... unpacks Debian's source packages of this release, without later updates,
+# which not every mirror has, as FOLDER/sources/PACKAGE, unless they are there.
 fetch_sources()
 {
-    local package missing=() options=(-o "Dir::Etc::SourceList=$folder/sources.list" -o Dir::Etc::SourceParts=/dev/null
+    local folder=$1 package missing=()
+    local options=(-o "Dir::Etc::SourceList=$folder/sources.list" -o Dir::Etc::SourceParts=/dev/null
         -o "Dir::State::Lists=$folder/lists")
-    for package in "$@"; do
+    for package in "${@:2}"; do
         [ -d "$folder/sources/$package" ] || missing+=("$package")
     done
     [ ${#missing[@]} -gt 0 ] || return 0

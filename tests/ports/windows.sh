@@ -34,17 +34,12 @@ make()
 
 build_small_libraries()
 {
-    local stb=(-DTINYGLTF_NO_STB_IMAGE -DTINYGLTF_NO_STB_IMAGE_WRITE) # pictures are not tinygltf's business here
     mkdir -p "$prefix/include" "$prefix/share/cmake"
-    cp -a /usr/include/{glm,nlohmann,CLI} "$prefix/include" # headers alone
+    cp -a /usr/include/{glm,nlohmann,CLI,tiny_gltf.h} "$prefix/include" # headers alone
     cp -a /usr/share/cmake/{glm,nlohmann_json,CLI11} "$prefix/share/cmake"
     cross png "$folder/sources/libpng1.6" -DPNG_TESTS=OFF -DPNG_SHARED=OFF
     make png
     cmake --install "$folder/png"
-    cross tinygltf "$folder/sources/tinygltf" -DTINYGLTF_BUILD_LOADER_EXAMPLE=OFF -DBUILD_TESTING=OFF \
-        "-Dstb_INCLUDE_DIRS=$prefix/include" -Dstb_LIBRARY= "-DCMAKE_CXX_FLAGS=${stb[*]}"
-    make tinygltf TinyGLTF
-    cmake --install "$folder/tinygltf"
     cross googletest /usr/src/googletest -DBUILD_GMOCK=OFF
     make googletest
     cmake --install "$folder/googletest"
@@ -75,7 +70,7 @@ build_kit()
         options+=("-DOSGGPUANIMATION_WITH_$option=OFF")
     done
     cross kit "$root" -DBUILD_TESTING=ON -DOSGGPUANIMATION_UNITY=ON -DOSGGPUANIMATION_WERROR=ON "${options[@]}" \
-        "-DCMAKE_CXX_FLAGS=-DTINYGLTF_NO_STB_IMAGE -DTINYGLTF_NO_STB_IMAGE_WRITE" "-DCPACK_PACKAGE_DIRECTORY=$folder"
+        "-DCPACK_PACKAGE_DIRECTORY=$folder"
     make kit plugins osggpuanim "${programs[@]/%/_tests}"
 }
 
@@ -175,9 +170,9 @@ PYTHON
 )
 
 install_missing cmake ninja-build g++-mingw-w64-x86-64-posix libz-mingw-w64-dev wine wine64 xvfb xauth dpkg-dev \
-    libglm-dev nlohmann-json3-dev libcli11-dev googletest python3-skimage python3-pil
+    libglm-dev nlohmann-json3-dev libcli11-dev libtinygltf-dev googletest python3-skimage python3-pil
 mkdir -p "$folder"
-fetch_sources openscenegraph libpng1.6 tinygltf
+fetch_sources "$folder" openscenegraph libpng1.6
 [ -f "$prefix/lib/libgtest.a" ] || build_small_libraries
 [ -f "$prefix/bin/osgviewer.exe" ] || build_osg
 build_kit

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "gltf/data/Picture.h"
+#include "gltf/data/PictureHeader.h"
 
-#include <osg/Image>
-
-#include <cstddef>
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -27,19 +23,5 @@ std::string writePng(const osg::Image& image, int channels);
 
 /// False: EXT_texture_webp gives way to the texture's other picture.
 extern const bool readsWebp;
-
-// For the codecs.
-
-inline Error damagedPicture()
-{
-    return Error{"the picture is damaged"};
-}
-
-/// The header, if a texture may have its size and the data is long enough for it.
-Result<PictureHeader> checkSize(const char* mimeType, std::uint32_t width, std::uint32_t height,
-                                std::uint64_t maxPixels, std::size_t bytesOfPixel);
-/// The same for a JPEG, whose scans must be few.
-Result<PictureHeader> checkJpegSize(std::uint32_t width, std::uint32_t height, const std::vector<unsigned char>& bytes);
-osg::ref_ptr<osg::Image> newImage(std::size_t width, std::size_t height, GLenum format, GLenum type);
 
 } // namespace osgGpuAnimation::gltf

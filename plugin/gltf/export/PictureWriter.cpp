@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/export/PictureWriter.h"
 
+#include "gltf/data/Picture.h"
 #include "gltf/data/PictureCodecs.h"
 
 #include <algorithm>

@@ -9,6 +9,12 @@
 
 USE_OSGPLUGIN(gltf)
 USE_OSGPLUGIN(crowd)
+#ifdef OSG_LIBRARY_STATIC // tests/ports/osg.sh static
+USE_OSGPLUGIN(osg2)
+USE_OSGPLUGIN(png)
+USE_OSGPLUGIN(jpeg)
+USE_SERIALIZER_WRAPPER_LIBRARY(osg)
+#endif
 
 /// Usage: embedded MODEL.glb SCENE.osgt. Exit status 0: the model is read by the plugins that are linked, and a scene
 /// that was written keeps its character.

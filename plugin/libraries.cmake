@@ -1,7 +1,18 @@
 # SPDX-License-Identifier: MIT
-# What the kit can do without: OSGGPUANIMATION_WITH_NAME is on where the library is found, and can be switched off. CMake's
+# tinygltf, and what the kit can do without: OSGGPUANIMATION_WITH_NAME is on where the library is found, and can be switched off. CMake's
 # summary says what its absence costs. OSGGPUANIMATION_NAME is the target to link.
 include(FeatureSummary)
+
+find_package(nlohmann_json REQUIRED) # a static tinygltf names it
+find_package(TinyGLTF QUIET)
+if(NOT TARGET TinyGLTF::TinyGLTF) # vcpkg has the header alone
+    find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
+    file(CONFIGURE OUTPUT tinygltf.cpp CONTENT "#define TINYGLTF_IMPLEMENTATION\n#include <tiny_gltf.h>\n")
+    add_library(osgGpuAnimation_tinygltf STATIC EXCLUDE_FROM_ALL ${PROJECT_BINARY_DIR}/tinygltf.cpp)
+    target_include_directories(osgGpuAnimation_tinygltf SYSTEM PUBLIC ${TINYGLTF_INCLUDE_DIR})
+    target_compile_definitions(osgGpuAnimation_tinygltf PUBLIC TINYGLTF_NO_STB_IMAGE TINYGLTF_NO_STB_IMAGE_WRITE)
+    add_library(TinyGLTF::TinyGLTF ALIAS osgGpuAnimation_tinygltf)
+endif()
 
 # Looks for the library as find_NAME() does, which defines TARGET.
 macro(osggpuanimation_optional name target loss)
@@ -65,6 +76,9 @@ macro(find_OSGANIMATION)
         target_link_libraries(osgGpuAnimation_libosgAnimation INTERFACE ${OSGANIMATION_LIBRARIES})
     endif()
 endmacro()
+macro(find_CLI11)
+    find_package(CLI11 CONFIG QUIET)
+endmacro()
 
 osggpuanimation_optional(EGL OpenGL::EGL "pictures without a window need a display: no EglGraphicsContext")
 osggpuanimation_optional(DRACO draco::draco_static "files with KHR_draco_mesh_compression are refused")
@@ -76,3 +90,4 @@ osggpuanimation_optional(WEBP osgGpuAnimation_webp "WebP textures (EXT_texture_w
 osggpuanimation_optional(ASSIMP osgGpuAnimation_libassimp "no .fbx and other formats: no plugin osgdb_assimp")
 osggpuanimation_optional(OSGANIMATION osgGpuAnimation_libosgAnimation
     "scenes of osgAnimation are not converted: no plugin .gpuanim, no osgGpuAnimation::osganimation")
+osggpuanimation_optional(CLI11 CLI11::CLI11 "no command osggpuanim")

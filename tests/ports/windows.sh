@@ -71,7 +71,7 @@ build_kit()
         options+=("-DOSGGPUANIMATION_WITH_$option=OFF")
     done
     cross kit "$root" -DBUILD_TESTING=ON -DOSGGPUANIMATION_UNITY=ON -DOSGGPUANIMATION_WERROR=ON "${options[@]}" \
-        "-DCPACK_PACKAGE_DIRECTORY=$folder"
+        -DCMAKE_SKIP_INSTALL_ALL_DEPENDENCY=ON
     make kit plugins osggpuanim "${programs[@]/%/_tests}"
 }
 
@@ -136,31 +136,42 @@ run_oracle()
     [ $passed -eq ${#files[@]} ]
 }
 
-# The stock viewer's picture of a scene under Wine, and that of Linux, if there is a build in build/.
+# CPack's ZIP, unpacked into $folder/unpacked.
+unpack_zip()
+{
+    rm -rf "$folder/zip" "$folder/unpacked"
+    mkdir -p "$folder/unpacked"
+    (cd "$build" && cpack -G ZIP -B "$folder/zip")
+    (cd "$folder/unpacked" && cmake -E tar xf "$folder"/zip/*.zip)
+}
+
+# The picture of the stock viewer from the ZIP, with nothing on the paths, and that of Linux, from a build in build/. The
+# windows are smaller than the screen, where Wine would not let one cover it; Wine's desktop is on one screen at a time.
 compare_pictures()
 (
     pictures=$folder/pictures
     mkdir -p "$pictures"
-    scene=(-O "clip=Run start=0.37 speed=0" "$root/scenes/Wanderer.glb.studio")
+    options="clip=Run start=0.37 speed=0" scene=$root/scenes/Wanderer.glb.studio
+    wineserver -k || true
+    width=320 height=320
     source "$root/tests/viewer/screen.sh"
-    OSG_LIBRARY_PATH=$root/build/lib LIBGL_ALWAYS_SOFTWARE=1 show "$pictures/linux" "${scene[@]}"
-    osgviewer() { start osgviewer.exe "$@"; }
-    show "$pictures/windows" "${scene[@]}"
-    for system in linux windows; do
-        pixels "$pictures/$system" >"$pictures/$system.bgrx"
-    done
-    /usr/bin/python3 - "$pictures" $width $height <<'PYTHON'
+    OSG_LIBRARY_PATH=$root/build/lib show "$pictures/linux" -O "$options" "$scene"
+    cd "$pictures/../unpacked"/*/bin
+    osgviewer() { exec wine osgviewer.exe "$@"; }
+    show "$pictures/windows" -O "$options" "Z:$scene"
+    wineserver -k || true
+    /usr/bin/python3 - "$pictures" $width <<'PYTHON'
 import sys
 import numpy as np
 from PIL import Image
 from skimage.color import deltaE_ciede2000, rgb2lab
 
-folder, width, height = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+folder, side = sys.argv[1], int(sys.argv[2])
 
 
 def read(system):
-    pixels = np.fromfile(f"{folder}/{system}.bgrx", np.uint8).reshape(height, width, 4)[..., 2::-1]
-    Image.fromarray(pixels).save(f"{folder}/{system}.png")
+    pixels = np.fromfile(f"{folder}/{system}", np.uint8)[-side * side * 4:].reshape(side, side, 4)[:256, :256, 2::-1]
+    Image.fromarray(np.ascontiguousarray(pixels)).save(f"{folder}/{system}.png")
     return rgb2lab(pixels / 255)
 
 
@@ -186,6 +197,6 @@ failures=0
 run_tests "${1:+$(IFS='|' && echo "$*")}"
 judge_tests || failures=$((failures + 1))
 run_oracle || failures=$((failures + 1))
+unpack_zip
 compare_pictures || failures=$((failures + 1))
-wineserver -k || true
 exit $failures

@@ -27,20 +27,26 @@ Result<void> CrowdOutfits::add(Outfit* outfit)
     return {};
 }
 
+std::uint16_t CrowdOutfits::numberOf(const Outfit* outfit) const
+{
+    return _meshes ? _meshes->numberOf(outfit) : OutfitMeshes::Number(0);
+}
+
 Result<void> CrowdOutfits::replace(const Outfit* outfit, Outfit* by)
 {
-    if (!_meshes) return noOutfit();
-    const Result<void> replaced = _meshes->replace(_crowd, *_instances.set(), outfit, by);
+    const std::uint16_t number = numberOf(outfit);
+    if (number == 0) return noOutfit();
+    const Result<void> replaced = _meshes->replace(_crowd, *_instances.set(), number, by);
     if (replaced) _changed();
     return replaced;
 }
 
 bool CrowdOutfits::remove(const Outfit* outfit)
 {
-    const OutfitMeshes::Number number = _meshes ? _meshes->numberOf(outfit) : OutfitMeshes::Number(0);
+    const std::uint16_t number = numberOf(outfit);
     if (number == 0) return false;
     _instances.removeOutfit(number);
-    _meshes->remove(_crowd, outfit);
+    _meshes->remove(_crowd, number);
     _changed();
     return true;
 }
@@ -52,7 +58,7 @@ std::vector<osg::ref_ptr<Outfit>> CrowdOutfits::getList() const
 
 Result<void> CrowdOutfits::wear(std::size_t instance, const Outfit* outfit)
 {
-    const OutfitMeshes::Number number = _meshes ? _meshes->numberOf(outfit) : OutfitMeshes::Number(0);
+    const std::uint16_t number = numberOf(outfit);
     if (outfit && number == 0) return noOutfit();
     _instances.setOutfit(instance, number);
     return {};

@@ -7,6 +7,7 @@
 #include <osg/Group>
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <utility>
@@ -50,6 +51,7 @@ private:
         : _crowd(crowd), _instances(instances), _meshes(meshes), _changed(std::move(changed))
     {
     }
+    std::uint16_t numberOf(const Outfit* outfit) const; ///< 0: there is no such outfit
     Result<void> wear(std::size_t instance, const Outfit* outfit);
     const Outfit* wornBy(std::size_t instance) const; ///< null: none
 

@@ -243,6 +243,7 @@ void CrowdInstances::remove(std::size_t index)
 
 void CrowdInstances::move(std::size_t index, const AffineMatrix& rootMatrix, const osg::Vec3d& position)
 {
+    ++_motions;
     _rootMatrices.set(index, rootMatrix);
     _positions[index] = position;
     _scales[index] = maxScale(rootMatrix);
@@ -370,6 +371,7 @@ bool CrowdInstances::advance(double seconds, PendingEvents& outEvents)
     for (const auto& [handle, machine] : _machines)
         machine->update(controller(indexOf(handle)), seconds);
     if (std::isfinite(seconds)) _clock += seconds;
+    ++_motions;
     if (!_isControlledKnown)
     {
         _controlled.clear();
@@ -403,17 +405,18 @@ PoseBatch::BlendCost CrowdInstances::blendCost(std::size_t index) const
                                : PoseBatch::BlendCost::Plain;
 }
 
-void CrowdInstances::addTo(PoseBatch& batch, const std::vector<std::uint32_t>& indices) const
+void CrowdInstances::addTo(PoseBatch& batch, const std::uint32_t* indices, std::size_t count) const
 {
-    for (const std::uint32_t index : indices)
+    for (std::size_t place = 0; place < count; ++place)
     {
+        const std::uint32_t index = indices[place];
         if (_controllers[index])
             batch.add(_controllers[index]->instruction(), _rootMatrices[index]);
         else
             batch.addSample(_playbacks[index].sample(*_set, _clock), _rootMatrices[index]);
     }
     if (_tinted == 0) return;
-    for (std::size_t place = 0; place < indices.size(); ++place)
+    for (std::size_t place = 0; place < count; ++place)
         batch.setTint(place, _tints[indices[place]]);
 }
 

@@ -154,7 +154,10 @@ public:
     }
     /// The number of instances with a controller.
     std::size_t controllerCount() const;
+    bool hasController(std::size_t index) const { return _controllers[index] != nullptr; }
     double clock() const { return _clock; } ///< seconds; see CrowdMember
+    /// Grows with each advance() and move(): the same number, the same joints of instances without a controller.
+    std::uint64_t motions() const { return _motions; }
     /// Identifies this object and no copy.
     const std::shared_ptr<const void>& identity() const { return _identity; }
     /// Snapshots for frames, by index. Tints: empty if all are white.
@@ -181,7 +184,7 @@ public:
         _cells.findSeen(planes, outSeen);
     }
     /// Adds the instances to the batch, in the order of the indices.
-    void addTo(PoseBatch& batch, const std::vector<std::uint32_t>& indices) const;
+    void addTo(PoseBatch& batch, const std::uint32_t* indices, std::size_t count) const;
 
 private:
     static std::size_t placeOf(Handle handle) { return handle & 0xFFFFFFFFu; } ///< in _indexOfPlace
@@ -201,6 +204,7 @@ private:
 
     std::shared_ptr<const AnimationSet> _set;
     double _clock = 0.0; ///< seconds
+    std::uint64_t _motions = 0;
     std::vector<Box> _clipBounds;
     Box _allBounds; ///< of instances with a controller
     std::shared_ptr<const MixBounds> _mixBounds;

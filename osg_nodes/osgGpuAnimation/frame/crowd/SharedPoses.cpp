@@ -407,13 +407,7 @@ std::vector<DrawState> SharedPoses::submit(PoseFrame& frame, const CrowdInstance
                          });
         firstPose += batch->size();
         if (lists) lists->arrange(instances, list->drawn, runs);
-        const std::shared_ptr<const PlacedInstances> placed = shared(list);
-        const std::size_t slot = frame.submitShared(std::move(batch), &instances, placed);
-        for (const OutfitLists::Run& run : runs)
-        {
-            draws.push_back(frame.placedState(set, slot, placed, run.first, run.count, run.level));
-            draws.back().list = run.list;
-        }
+        submitPlaced(frame, instances, std::move(batch), shared(list), runs, draws);
     }
     return draws;
 }

@@ -191,20 +191,18 @@ Result<void> OutfitMeshes::add(const osg::Group& crowd, const AnimationSet& set,
     return {};
 }
 
-Result<void> OutfitMeshes::replace(const osg::Group& crowd, const AnimationSet& set, const Outfit* outfit, Outfit* by)
+Result<void> OutfitMeshes::replace(const osg::Group& crowd, const AnimationSet& set, Number number, Outfit* by)
 {
-    const Number number = numberOf(outfit);
-    if (number == 0) return Error{"the crowd has no such outfit"};
-    if (by != outfit && numberOf(by) != 0) return Error{"the crowd has the outfit \"" + by->getName() + "\" already"};
+    if (by != outfit(number) && numberOf(by) != 0) return Error{"the crowd has the outfit \"" + by->getName() + "\" already"};
     if (const Result<void> checked = check(crowd, set, by); !checked) return checked;
     _outfits[number - 1u] = by;
     make(crowd);
     return {};
 }
 
-void OutfitMeshes::remove(const osg::Group& crowd, const Outfit* outfit)
+void OutfitMeshes::remove(const osg::Group& crowd, Number number)
 {
-    if (const Number number = numberOf(outfit); number != 0) _outfits[number - 1u] = nullptr;
+    _outfits[number - 1u] = nullptr;
     while (!_outfits.empty() && !_outfits.back())
         _outfits.pop_back();
     make(crowd);
@@ -217,9 +215,7 @@ bool OutfitMeshes::update(const osg::Group& crowd)
     forEachMesh(crowd,
                 [&](const SkinnedGeometry& mesh)
                 {
-                    const Source present{const_cast<SkinnedGeometry*>(&mesh),
-                                         const_cast<osg::StateSet*>(mesh.getStateSet()), mesh.getNodeMask()};
-                    isSame = isSame && count < _sources.size() && _sources[count] == present;
+                    isSame = isSame && count < _sources.size() && _sources[count].isOf(mesh);
                     ++count;
                 });
     if (isSame && count == _sources.size()) return false;

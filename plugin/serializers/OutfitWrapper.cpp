@@ -29,13 +29,14 @@ void transferMap(ValueStream& stream, const char* name, const std::map<std::stri
         if (stream.hasRead()) set(key, value);
 }
 
-void transferColor(ValueStream& stream, osg::Vec4& color)
+template <typename Vector>
+void transferVector(ValueStream& stream, Vector& vector)
 {
-    for (int channel = 0; channel < 4; ++channel)
+    for (int i = 0; i < Vector::num_components; ++i)
     {
-        auto value = static_cast<double>(color[channel]);
+        auto value = static_cast<double>(vector[i]);
         stream.value(value);
-        color[channel] = static_cast<float>(value);
+        vector[i] = static_cast<float>(value);
     }
 }
 
@@ -59,12 +60,15 @@ void transferOutfit(ValueStream& stream, Outfit& outfit)
         stream, "Visibility", outfit.getVisibility(), [&](bool& isVisible) { stream.value(isVisible); },
         [&](const std::string& part, bool isVisible) { outfit.setVisible(part, isVisible); });
     transferMap(
-        stream, "Colors", outfit.getColors(), [&](osg::Vec4& color) { transferColor(stream, color); },
+        stream, "Colors", outfit.getColors(), [&](osg::Vec4& color) { transferVector(stream, color); },
         [&](const std::string& material, const osg::Vec4& color) { outfit.setColor(material, color); });
     transferMap(
         stream, "Pictures", outfit.getPictures(), [&](osg::ref_ptr<osg::Image>& picture) { stream.image(picture); },
         [&](const std::string& material, const osg::ref_ptr<osg::Image>& picture)
         { outfit.setPicture(material, picture); });
+    transferMap(
+        stream, "JointScales", outfit.getJointScales(), [&](osg::Vec3& scale) { transferVector(stream, scale); },
+        [&](const std::string& joint, const osg::Vec3& scale) { outfit.setJointScale(joint, scale); });
     std::vector<Outfit::Prop> props = outfit.getProps();
     if (stream.isReading()) props.clear();
     stream.list("Props", props, [&](Outfit::Prop& prop) { transferProp(stream, prop); });

@@ -187,7 +187,9 @@ void AnimatedCrowd::showOutfits()
 Result<void> AnimatedCrowd::setOutfit(Instance instance, const Outfit* outfit)
 {
     const std::size_t index = _instances->indexOf(instance);
-    return index == CrowdInstances::none ? CrowdInstances::noInstance() : _outfits.wear(index, outfit);
+    if (index == CrowdInstances::none) return CrowdInstances::noInstance();
+    if (_instances->hasProportions()) dirtyBound();
+    return _outfits.wear(index, outfit);
 }
 
 const Outfit* AnimatedCrowd::getOutfit(Instance instance) const

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/CrowdOutfits.h>
 
+#include <osgGpuAnimation/animation/JointPose.h>
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/properties/OutfitMeshes.h>
 
@@ -15,6 +16,19 @@ Error noOutfit()
     return Error{"the crowd has no such outfit; add() adds it"};
 }
 
+/// Null: those of the clips.
+std::shared_ptr<const JointPose> proportionsOf(const Outfit& outfit, const std::shared_ptr<const AnimationSet>& set)
+{
+    if (outfit.getJointScales().empty()) return nullptr;
+    const auto pose = std::make_shared<JointPose>(set);
+    for (const auto& [name, scale] : outfit.getJointScales())
+    {
+        const std::size_t joint = set->skeleton().jointNamed(name).value();
+        pose->setScale(joint, glm::vec3(pose->transform(joint).scale) * glm::vec3(scale.x(), scale.y(), scale.z()));
+    }
+    return pose;
+}
+
 } // namespace
 
 Result<void> CrowdOutfits::add(Outfit* outfit)
@@ -23,7 +37,7 @@ Result<void> CrowdOutfits::add(Outfit* outfit)
     const Result<void> added = (_meshes ? *_meshes : *first).add(_crowd, *_instances.set(), outfit);
     if (!added) return added;
     if (first) _meshes = std::move(first);
-    _changed();
+    show(outfit);
     return {};
 }
 
@@ -37,8 +51,14 @@ Result<void> CrowdOutfits::replace(const Outfit* outfit, Outfit* by)
     const std::uint16_t number = numberOf(outfit);
     if (number == 0) return noOutfit();
     const Result<void> replaced = _meshes->replace(_crowd, *_instances.set(), number, by);
-    if (replaced) _changed();
+    if (replaced) show(by);
     return replaced;
+}
+
+void CrowdOutfits::show(const Outfit* outfit)
+{
+    _instances.setProportions(numberOf(outfit), proportionsOf(*outfit, _instances.set()));
+    _changed();
 }
 
 bool CrowdOutfits::remove(const Outfit* outfit)
@@ -46,6 +66,7 @@ bool CrowdOutfits::remove(const Outfit* outfit)
     const std::uint16_t number = numberOf(outfit);
     if (number == 0) return false;
     _instances.removeOutfit(number);
+    _instances.setProportions(number, nullptr);
     _meshes->remove(_crowd, number);
     _changed();
     return true;

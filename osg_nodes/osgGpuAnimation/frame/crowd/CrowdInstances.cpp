@@ -2,7 +2,10 @@
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 
 #include <osgGpuAnimation/animation/detail/ControllerDetail.h>
+#include <osgGpuAnimation/animation/JointPose.h>
 #include <osgGpuAnimation/mesh/lod/LodLevels.h>
+
+#include <layout.glsl>
 
 #include <glm/geometric.hpp>
 
@@ -79,7 +82,7 @@ void takeOut(std::vector<Element>& elements, std::size_t index)
 CrowdInstances::CrowdInstances(const CrowdInstances& other)
     : _set(other._set), _clock(other._clock), _clipBounds(other._clipBounds), _allBounds(other._allBounds),
       _mixBounds(other._mixBounds), _rootMatrices(other._rootMatrices), _positions(other._positions),
-      _cells(other._cells), _scales(other._scales), _tints(other._tints), _outfits(other._outfits),
+      _cells(other._cells), _scales(other._scales), _tints(other._tints), _outfits(other._outfits), _proportions(other._proportions),
       _playbacks(other._playbacks), _isControlledKnown(false), _handles(other._handles),
       _indexOfPlace(other._indexOfPlace), _usesOfPlace(other._usesOfPlace), _freePlaces(other._freePlaces),
       _tinted(other._tinted), _userData(other._userData)
@@ -150,7 +153,7 @@ CrowdMember CrowdInstances::memberOf(std::size_t index) const
 {
     CrowdMember member(sphereAround(boxOf(index), _rootMatrices[index]));
     member.scale = _scales[index];
-    if (_controllers[index])
+    if (_controllers[index] || proportionsOf(index))
         member.clip = CrowdMember::controlled;
     else
         _playbacks[index].describe(member);
@@ -161,7 +164,9 @@ CrowdMember CrowdInstances::memberOf(std::size_t index) const
 bool CrowdInstances::updatePosedBox(std::size_t index)
 {
     std::unique_ptr<PosedBox>& posed = _posedBoxes[index];
-    const bool isPosed = _controllers[index] && _mixBounds && !_controllers[index]->instruction().poses.empty();
+    const std::shared_ptr<const JointPose>& proportions = proportionsOf(index);
+    const bool isPosed = _mixBounds && (proportions || (_controllers[index] &&
+                                                        !_controllers[index]->instruction().poses.empty()));
     if (!isPosed && !posed) return false;
     if (!isPosed)
     {
@@ -169,7 +174,9 @@ bool CrowdInstances::updatePosedBox(std::size_t index)
         return true;
     }
     thread_local std::vector<PlayedClip> played;
-    ControllerDetail::findPlayedClips(*_controllers[index], played);
+    played.assign(1, PlayedClip{_playbacks[index].clip()});
+    if (_controllers[index]) ControllerDetail::findPlayedClips(*_controllers[index], played);
+    if (proportions) played.push_back({-1, PlayedClip::Part::Mixed, proportions->extent()});
     if (posed && posed->played == played) return false;
     posed = std::make_unique<PosedBox>(PosedBox{played, _mixBounds->box(played, anyConstraints(*_set))});
     return true;
@@ -277,12 +284,37 @@ void CrowdInstances::setOutfit(std::size_t index, std::uint16_t outfit)
 {
     if (_outfits.empty() && outfit == 0) return;
     _outfits.resize(size(), 0);
+    const std::shared_ptr<const JointPose> before = proportionsOf(index);
     _outfits[index] = outfit;
+    if (before != proportionsOf(index)) updateProportions(index);
 }
 
 void CrowdInstances::removeOutfit(std::uint16_t outfit)
 {
-    std::replace(_outfits.begin(), _outfits.end(), outfit, std::uint16_t(0));
+    for (std::size_t index = 0; index < _outfits.size(); ++index)
+        if (_outfits[index] == outfit) setOutfit(index, 0);
+}
+
+void CrowdInstances::setProportions(std::uint16_t outfit, std::shared_ptr<const JointPose> proportions)
+{
+    if (!proportions && outfit >= _proportions.size()) return;
+    if (outfit >= _proportions.size()) _proportions.resize(outfit + 1u);
+    _proportions[outfit] = std::move(proportions);
+    for (std::size_t index = 0; index < _outfits.size(); ++index)
+        if (_outfits[index] == outfit) updateProportions(index);
+}
+
+void CrowdInstances::updateProportions(std::size_t index)
+{
+    ++_motions;
+    updatePosedBox(index);
+    updateMember(index);
+}
+
+const std::shared_ptr<const JointPose>& CrowdInstances::proportionsOf(std::size_t index) const
+{
+    static const std::shared_ptr<const JointPose> none;
+    return outfit(index) < _proportions.size() ? _proportions[outfit(index)] : none;
 }
 
 void CrowdInstances::setUserData(std::size_t index, osg::Referenced* data)
@@ -301,9 +333,16 @@ osg::Referenced* CrowdInstances::userData(std::size_t index) const
 
 PoseInstruction CrowdInstances::instruction(std::size_t index) const
 {
-    if (_controllers[index]) return _controllers[index]->instruction();
     PoseInstruction instruction;
-    instruction.samples[0] = _playbacks[index].sample(*_set, _clock);
+    if (_controllers[index])
+        instruction = _controllers[index]->instruction();
+    else
+        instruction.samples[0] = _playbacks[index].sample(*_set, _clock);
+    const std::shared_ptr<const JointPose>& proportions = proportionsOf(index);
+    if (!proportions || instruction.sampleCount == PoseInstruction::maxSamples) return instruction;
+    instruction.samples[instruction.sampleCount++] = {static_cast<std::uint32_t>(instruction.poses.size()), 0.0f, 1.0f,
+                                                      POSE_SAMPLE_POSED | POSE_SAMPLE_ABOVE};
+    instruction.poses.push_back(proportions);
     return instruction;
 }
 
@@ -401,6 +440,7 @@ bool CrowdInstances::advance(double seconds, PendingEvents& outEvents)
 
 PoseBatch::BlendCost CrowdInstances::blendCost(std::size_t index) const
 {
+    if (proportionsOf(index)) return PoseBatch::BlendCost::Posed;
     return _controllers[index] ? PoseBatch::blendCostOf(_controllers[index]->instruction())
                                : PoseBatch::BlendCost::Plain;
 }
@@ -410,7 +450,9 @@ void CrowdInstances::addTo(PoseBatch& batch, const std::uint32_t* indices, std::
     for (std::size_t place = 0; place < count; ++place)
     {
         const std::uint32_t index = indices[place];
-        if (_controllers[index])
+        if (proportionsOf(index))
+            batch.add(instruction(index), _rootMatrices[index]);
+        else if (_controllers[index])
             batch.add(_controllers[index]->instruction(), _rootMatrices[index]);
         else
             batch.addSample(_playbacks[index].sample(*_set, _clock), _rootMatrices[index]);

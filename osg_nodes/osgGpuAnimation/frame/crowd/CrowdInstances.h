@@ -124,6 +124,9 @@ public:
     void setOutfit(std::size_t index, std::uint16_t outfit);
     std::uint16_t outfit(std::size_t index) const { return _outfits.empty() ? std::uint16_t(0) : _outfits[index]; }
     void removeOutfit(std::uint16_t outfit); ///< its instances have none
+    /// The scales of joints of the outfit's instances, which have poses of their own; null: those of the clips.
+    void setProportions(std::uint16_t outfit, std::shared_ptr<const JointPose> proportions);
+    bool hasProportions() const { return !_proportions.empty(); } ///< some outfit has had some
     /// The application's data of an instance; null: none.
     void setUserData(std::size_t index, osg::Referenced* data);
     osg::Referenced* userData(std::size_t index) const;
@@ -188,7 +191,7 @@ public:
 
 private:
     static std::size_t placeOf(Handle handle) { return handle & 0xFFFFFFFFu; } ///< in _indexOfPlace
-    /// The box of an instance with a JointPose, in the character's space.
+    /// The box of an instance with a JointPose or proportions, in the character's space.
     struct PosedBox
     {
         std::vector<PlayedClip> played;
@@ -199,6 +202,8 @@ private:
     CrowdMember memberOf(std::size_t index) const;
     void updateMember(std::size_t index) { _cells.set(index, memberOf(index)); }
     bool updatePosedBox(std::size_t index);
+    void updateProportions(std::size_t index);
+    const std::shared_ptr<const JointPose>& proportionsOf(std::size_t index) const; ///< null: those of the clips
     void listenTo(std::size_t index);
     Handle newHandle(std::size_t index);
 
@@ -213,12 +218,13 @@ private:
     CrowdCells _cells;
     std::vector<float> _scales;
     SharedBlocks<std::uint32_t> _tints;
-    std::vector<std::uint16_t> _outfits; ///< empty: all have none
+    std::vector<std::uint16_t> _outfits;                          ///< empty: all have none
+    std::vector<std::shared_ptr<const JointPose>> _proportions;   ///< by outfit; may have fewer
     std::vector<CrowdPlayback> _playbacks;
     std::vector<std::unique_ptr<AnimationController>> _controllers; ///< mostly null
     std::vector<std::uint32_t> _controlled;                         ///< the indices of those that are not null
     bool _isControlledKnown = true;                                 ///< false: _controlled is out of date
-    std::vector<std::unique_ptr<PosedBox>> _posedBoxes;             ///< null without a JointPose
+    std::vector<std::unique_ptr<PosedBox>> _posedBoxes;             ///< null without a JointPose or proportions
     std::vector<Handle> _handles;
     std::vector<std::uint32_t> _indexOfPlace; ///< by the lower half of a handle
     std::vector<std::uint32_t> _usesOfPlace;

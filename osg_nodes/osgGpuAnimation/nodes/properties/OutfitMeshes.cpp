@@ -150,6 +150,13 @@ Result<void> OutfitMeshes::check(const osg::Group& crowd, const AnimationSet& se
         std::find(variants.begin(), variants.end(), outfit->getVariant()) == variants.end())
         return Error{subject + "there is no material variant \"" + outfit->getVariant() + "\"; the variants are " +
                      quotedList({variants.begin(), variants.end()})};
+    for (const auto& [joint, scale] : outfit->getJointScales())
+    {
+        if (const auto known = set.skeleton().jointNamed(joint); !known) return Error{subject + known.error().message};
+        for (int axis = 0; axis < 3; ++axis)
+            if (!(scale[axis] >= 0.1f && scale[axis] <= 10.0f))
+                return Error{subject + "the scale of joint \"" + joint + "\" is not in [0.1, 10]"};
+    }
     const auto unknown = [&](const std::string& material) {
         return Error{subject + "there is no material \"" + material + "\"; the materials are " + quotedList(materials)};
     };

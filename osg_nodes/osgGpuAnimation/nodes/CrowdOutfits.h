@@ -33,7 +33,8 @@ public:
     CrowdOutfits& operator=(const CrowdOutfits&) = delete;
 
     /// Errors, which change nothing: outfit is null or was added before; it names a part, material, variant or joint
-    /// that the crowd lacks, a colour beyond [0, 1], a scale beyond [0.1, 10] or an empty picture; the crowd has 256 outfits.
+    /// that the crowd lacks, a colour beyond [0, 1], a scale beyond [0.1, 10] or an empty picture; the crowd has 256
+    /// outfits.
     Result<void> add(Outfit* outfit);
     /// The instances of the outfit get another one, or, with by == outfit, what has changed in it. Errors: those of
     /// add(); the crowd has no such outfit.

@@ -104,7 +104,8 @@ public:
 private:
     OutfitShare toOutfit(const Json& json, const std::string& where)
     {
-        checkObject(json, where, {"name", "share", "size", "hide", "show", "variant", "colors", "pictures", "proportions", "props"});
+        checkObject(json, where,
+                    {"name", "share", "size", "hide", "show", "variant", "colors", "pictures", "proportions", "props"});
         OutfitShare made{new Outfit};
         std::string name, variant;
         readText(json, "name", where, name);

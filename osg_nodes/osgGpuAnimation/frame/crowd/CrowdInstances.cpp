@@ -82,10 +82,10 @@ void takeOut(std::vector<Element>& elements, std::size_t index)
 CrowdInstances::CrowdInstances(const CrowdInstances& other)
     : _set(other._set), _clock(other._clock), _clipBounds(other._clipBounds), _allBounds(other._allBounds),
       _mixBounds(other._mixBounds), _rootMatrices(other._rootMatrices), _positions(other._positions),
-      _cells(other._cells), _scales(other._scales), _tints(other._tints), _outfits(other._outfits), _proportions(other._proportions),
-      _playbacks(other._playbacks), _isControlledKnown(false), _handles(other._handles),
-      _indexOfPlace(other._indexOfPlace), _usesOfPlace(other._usesOfPlace), _freePlaces(other._freePlaces),
-      _tinted(other._tinted), _userData(other._userData)
+      _cells(other._cells), _scales(other._scales), _tints(other._tints), _outfits(other._outfits),
+      _proportions(other._proportions), _playbacks(other._playbacks), _isControlledKnown(false),
+      _handles(other._handles), _indexOfPlace(other._indexOfPlace), _usesOfPlace(other._usesOfPlace),
+      _freePlaces(other._freePlaces), _tinted(other._tinted), _userData(other._userData)
 {
     for (const std::unique_ptr<AnimationController>& controller : other._controllers)
         _controllers.push_back(controller ? std::make_unique<AnimationController>(*controller) : nullptr);
@@ -165,8 +165,8 @@ bool CrowdInstances::updatePosedBox(std::size_t index)
 {
     std::unique_ptr<PosedBox>& posed = _posedBoxes[index];
     const std::shared_ptr<const JointPose>& proportions = proportionsOf(index);
-    const bool isPosed = _mixBounds && (proportions || (_controllers[index] &&
-                                                        !_controllers[index]->instruction().poses.empty()));
+    const bool isPosed =
+        _mixBounds && (proportions || (_controllers[index] && !_controllers[index]->instruction().poses.empty()));
     if (!isPosed && !posed) return false;
     if (!isPosed)
     {

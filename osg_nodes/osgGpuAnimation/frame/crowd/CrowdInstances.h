@@ -218,8 +218,8 @@ private:
     CrowdCells _cells;
     std::vector<float> _scales;
     SharedBlocks<std::uint32_t> _tints;
-    std::vector<std::uint16_t> _outfits;                          ///< empty: all have none
-    std::vector<std::shared_ptr<const JointPose>> _proportions;   ///< by outfit; may have fewer
+    std::vector<std::uint16_t> _outfits;                        ///< empty: all have none
+    std::vector<std::shared_ptr<const JointPose>> _proportions; ///< by outfit; may have fewer
     std::vector<CrowdPlayback> _playbacks;
     std::vector<std::unique_ptr<AnimationController>> _controllers; ///< mostly null
     std::vector<std::uint32_t> _controlled;                         ///< the indices of those that are not null

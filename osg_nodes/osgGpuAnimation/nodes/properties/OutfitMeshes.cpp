@@ -200,7 +200,8 @@ Result<void> OutfitMeshes::add(const osg::Group& crowd, const AnimationSet& set,
 
 Result<void> OutfitMeshes::replace(const osg::Group& crowd, const AnimationSet& set, Number number, Outfit* by)
 {
-    if (by != outfit(number) && numberOf(by) != 0) return Error{"the crowd has the outfit \"" + by->getName() + "\" already"};
+    if (by != outfit(number) && numberOf(by) != 0)
+        return Error{"the crowd has the outfit \"" + by->getName() + "\" already"};
     if (const Result<void> checked = check(crowd, set, by); !checked) return checked;
     _outfits[number - 1u] = by;
     make(crowd);

@@ -367,7 +367,8 @@ void AnimatedCrowd::traverse(osg::NodeVisitor& visitor)
     const auto nodesOfOutfits = [&] { return outfits ? outfits->nodesOfOutfits() : NodesOfOutfits(); };
     if (osgUtil::CullVisitor* cullVisitor = visitor.asCullVisitor())
         cullCrowd({*this, *this, *_instances, _meshes.drawn(), _meshes.getPixelError(), _meshes._levels,
-                   _sharedPoses.get(), outfits ? &outfits->lists() : nullptr},
+                   _sharedPoses && _sharedPoses->areUsed() ? _sharedPoses.get() : nullptr,
+                   outfits ? &outfits->lists() : nullptr},
                   *cullVisitor);
     else if (dynamic_cast<osgUtil::IntersectionVisitor*>(&visitor) || isFileWriter(visitor))
         visitInstances(*this, *_instances, nodesOfOutfits(), visitor);
@@ -382,11 +383,12 @@ void AnimatedCrowd::traverse(osg::NodeVisitor& visitor)
 void AnimatedCrowd::prepareSharedPoses()
 {
     if (_meshes._outfits && _meshes._outfits->update(*this)) _meshes.showLevels();
-    if (_sharedPoses) _sharedPoses->forgetUnused();
     _meshes.updateLevels();
     const bool isOn = _meshes.getPixelError() > 0.0f && getAnimationSet().paletteSize() > 0;
     if (isOn && (!_sharedPoses || !_sharedPoses->isOf(_meshes.drawn()))) // kept for the next pixel error
-        _sharedPoses = std::make_unique<SharedPoses>(_meshes.drawn(), getAnimationSet());
+        _sharedPoses = std::make_unique<SharedPoses>(_meshes.drawn(), getSharedAnimationSet());
+    if (isOn && !_meshes._task) _sharedPoses->wait(); // they take less time than levels
+    if (_sharedPoses) _sharedPoses->update();
 }
 
 void AnimatedCrowd::releaseGLObjects(osg::State* state) const

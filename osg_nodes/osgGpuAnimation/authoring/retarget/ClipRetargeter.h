@@ -4,7 +4,6 @@
 #include <osgGpuAnimation/animation/Clip.h>
 #include <osgGpuAnimation/authoring/retarget/RigMatch.h>
 
-#include <array>
 #include <memory>
 #include <vector>
 

@@ -15,7 +15,6 @@
 #include <cstddef>
 #include <map>
 #include <memory>
-#include <string>
 #include <utility>
 #include <vector>
 

@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <sstream>
 
 namespace osgGpuAnimation

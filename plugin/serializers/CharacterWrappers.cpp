@@ -99,31 +99,13 @@ void transferFadeSeconds(ValueStream& stream, CharacterKeys& keys)
     keys.setFadeSeconds(seconds);
 }
 
-template <typename Class>
-osg::Object* create()
-{
-    return new Class;
-}
-
-void addNothing(osgDB::ObjectWrapper*) {}
-
-osgDB::RegisterWrapperProxy wrappers[] = {
-    {&create<AnimatedCharacter>, "osgGpuAnimation::AnimatedCharacter",
-     "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group osg::Transform osg::MatrixTransform "
-     "osgGpuAnimation::AnimatedCharacter",
-     &addCharacterProperties},
-    {&create<JointAttachment>, "osgGpuAnimation::JointAttachment",
-     "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group osg::Transform osg::MatrixTransform "
-     "osgGpuAnimation::JointAttachment",
-     [](osgDB::ObjectWrapper* wrapper) { addProperty(wrapper, "Joint", &transferJoint); }},
-    {&create<RootMotionCallback>, "osgGpuAnimation::RootMotionCallback",
-     "osg::Object osg::Callback osg::NodeCallback osgGpuAnimation::RootMotionCallback", &addNothing},
-    {&create<PoseStatistics>, "osgGpuAnimation::PoseStatistics",
-     "osg::Object osg::Callback osgGpuAnimation::PoseStatistics", &addNothing},
-    {&create<CharacterKeys>, "osgGpuAnimation::CharacterKeys",
-     "osg::Object osg::Callback osgGpuAnimation::CharacterKeys",
-     [](osgDB::ObjectWrapper* wrapper) { addProperty(wrapper, "FadeSeconds", &transferFadeSeconds); }},
-};
+const char* const bases =
+    "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group osg::Transform osg::MatrixTransform";
+const Wrapper<AnimatedCharacter> character("AnimatedCharacter", bases, &addCharacterProperties);
+const Wrapper<JointAttachment> attachment("JointAttachment", bases, "Joint", &transferJoint);
+const Wrapper<RootMotionCallback> rootMotion("RootMotionCallback", "osg::Object osg::Callback osg::NodeCallback");
+const Wrapper<PoseStatistics> statistics("PoseStatistics", "osg::Object osg::Callback");
+const Wrapper<CharacterKeys> keys("CharacterKeys", "osg::Object osg::Callback", "FadeSeconds", &transferFadeSeconds);
 
 } // namespace
 

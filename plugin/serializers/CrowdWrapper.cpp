@@ -146,10 +146,9 @@ void addCrowdProperties(osgDB::ObjectWrapper* wrapper)
     addProperty(wrapper, "Instances", &transferInstances);
 }
 
-osgDB::RegisterWrapperProxy crowd([]() -> osg::Object* { return new AnimatedCrowd; }, "osgGpuAnimation::AnimatedCrowd",
-                                  "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group osg::Transform "
-                                  "osgGpuAnimation::AnimatedCrowd",
-                                  &addCrowdProperties);
+const Wrapper<AnimatedCrowd> crowd("AnimatedCrowd",
+                                   "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group osg::Transform",
+                                   &addCrowdProperties);
 
 } // namespace
 

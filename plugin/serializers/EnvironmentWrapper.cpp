@@ -76,12 +76,8 @@ void transferSurroundings(ValueStream& stream, Environment& environment)
     stream.close();
 }
 
-osgDB::RegisterWrapperProxy environmentWrapper([]() -> osg::Object* { return new Environment; },
-                                               "osgGpuAnimation::Environment",
-                                               "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group "
-                                               "osgGpuAnimation::Environment",
-                                               [](osgDB::ObjectWrapper* wrapper)
-                                               { addProperty(wrapper, "Surroundings", &transferSurroundings); });
+const Wrapper<Environment> wrapper("Environment", "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group",
+                                   "Surroundings", &transferSurroundings);
 
 } // namespace
 

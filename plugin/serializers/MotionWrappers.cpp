@@ -102,14 +102,9 @@ void transferChains(ValueStream& stream, SpringBones& springs)
     stream.require("", springs.setChains(std::move(chains), std::move(colliders)));
 }
 
-osgDB::RegisterWrapperProxy wrappers[] = {
-    {[]() -> osg::Object* { return new GroundFeet; }, "osgGpuAnimation::GroundFeet",
-     "osg::Object osg::Callback osg::NodeCallback osgGpuAnimation::GroundFeet",
-     [](osgDB::ObjectWrapper* wrapper) { addProperty(wrapper, "Feet", &transferFeet); }},
-    {[]() -> osg::Object* { return new SpringBones; }, "osgGpuAnimation::SpringBones",
-     "osg::Object osg::Callback osg::NodeCallback osgGpuAnimation::SpringBones",
-     [](osgDB::ObjectWrapper* wrapper) { addProperty(wrapper, "Chains", &transferChains); }},
-};
+const char* const bases = "osg::Object osg::Callback osg::NodeCallback";
+const Wrapper<GroundFeet> feet("GroundFeet", bases, "Feet", &transferFeet);
+const Wrapper<SpringBones> springs("SpringBones", bases, "Chains", &transferChains);
 
 } // namespace
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "serializers/ValueStream.h"
+#include "serializers/StoredAnimation.h"
 
 #include <osgGpuAnimation/nodes/Outfit.h>
 
@@ -29,22 +29,10 @@ void transferMap(ValueStream& stream, const char* name, const std::map<std::stri
         if (stream.hasRead()) set(key, value);
 }
 
-void transferColor(ValueStream& stream, osg::Vec4& color)
-{
-    for (int channel = 0; channel < 4; ++channel)
-    {
-        auto value = static_cast<double>(color[channel]);
-        stream.value(value);
-        color[channel] = static_cast<float>(value);
-    }
-}
-
 void transferProp(ValueStream& stream, Outfit::Prop& prop)
 {
     stream.property("Prop").value(prop.joint);
-    for (int row = 0; row < 4; ++row)
-        for (int column = 0; column < 4; ++column)
-            stream.value(prop.toJoint(row, column));
+    transferMatrix(stream, prop.toJoint);
     stream.endLine();
     stream.object(prop.node);
 }
@@ -59,7 +47,7 @@ void transferOutfit(ValueStream& stream, Outfit& outfit)
         stream, "Visibility", outfit.getVisibility(), [&](bool& isVisible) { stream.value(isVisible); },
         [&](const std::string& part, bool isVisible) { outfit.setVisible(part, isVisible); });
     transferMap(
-        stream, "Colors", outfit.getColors(), [&](osg::Vec4& color) { transferColor(stream, color); },
+        stream, "Colors", outfit.getColors(), [&](osg::Vec4& color) { stream.floats(color.ptr(), 4); },
         [&](const std::string& material, const osg::Vec4& color) { outfit.setColor(material, color); });
     transferMap(
         stream, "Pictures", outfit.getPictures(), [&](osg::ref_ptr<osg::Image>& picture) { stream.image(picture); },
@@ -73,14 +61,7 @@ void transferOutfit(ValueStream& stream, Outfit& outfit)
     stream.close();
 }
 
-void addOutfitProperties(osgDB::ObjectWrapper* wrapper)
-{
-    addProperty(wrapper, "Outfit", &transferOutfit);
-}
-
-osgDB::RegisterWrapperProxy outfit([]() -> osg::Object* { return new Outfit; }, "osgGpuAnimation::Outfit",
-                                   "osgGpuAnimation::ExactNumbers osg::Object osgGpuAnimation::Outfit",
-                                   &addOutfitProperties);
+const Wrapper<Outfit> wrapper("Outfit", "osgGpuAnimation::ExactNumbers osg::Object", "Outfit", &transferOutfit);
 
 } // namespace
 

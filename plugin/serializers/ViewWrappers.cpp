@@ -52,25 +52,16 @@ void transferHook(ValueStream& stream, ShaderHook& hook)
     if (stream.hasRead()) hook.set(place, text);
 }
 
-osgDB::RegisterWrapperProxy wrappers[] = {
-    {[]() -> osg::Object* { return new ShaderHook; }, "osgGpuAnimation::ShaderHook",
-     "osg::Object osg::StateAttribute osgGpuAnimation::ShaderHook",
-     [](osgDB::ObjectWrapper* wrapper) { addProperty(wrapper, "Hook", &transferHook); }},
-    {[]() -> osg::Object* { return new ViewLightsCallback; }, "osgGpuAnimation::ViewLightsCallback",
-     "osg::Object osg::Callback osgGpuAnimation::ViewLightsCallback", [](osgDB::ObjectWrapper*) {}},
-    {[]() -> osg::Object* { return new PunctualLight; }, "osgGpuAnimation::PunctualLight",
-     "osgGpuAnimation::ExactNumbers osg::Object osg::StateAttribute osg::Light osgGpuAnimation::PunctualLight",
-     [](osgDB::ObjectWrapper* wrapper) { addProperty(wrapper, "Cone", &transferCone); }},
-    {[]() -> osg::Object* { return new StartView; }, "osgGpuAnimation::StartView",
-     "osg::Object osg::Callback osgGpuAnimation::StartView",
-     [](osgDB::ObjectWrapper* wrapper) { addProperty(wrapper, "Camera", &transferCamera); }},
-    {[]() -> osg::Object* { return new Studio; }, "osgGpuAnimation::Studio",
-     "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group osgGpuAnimation::Environment "
-     "osgGpuAnimation::Studio",
-     [](osgDB::ObjectWrapper*) {}}, // makes its ground and backdrop itself
-    {[]() -> osg::Object* { return new RaisedHome; }, "osgGpuAnimation::RaisedHome",
-     "osg::Object osg::Callback osgGpuAnimation::RaisedHome", [](osgDB::ObjectWrapper*) {}},
-};
+const Wrapper<ShaderHook> hook("ShaderHook", "osg::Object osg::StateAttribute", "Hook", &transferHook);
+const Wrapper<ViewLightsCallback> viewLights("ViewLightsCallback", "osg::Object osg::Callback");
+const Wrapper<PunctualLight> light("PunctualLight",
+                                   "osgGpuAnimation::ExactNumbers osg::Object osg::StateAttribute osg::Light", "Cone",
+                                   &transferCone);
+const Wrapper<StartView> startView("StartView", "osg::Object osg::Callback", "Camera", &transferCamera);
+// Makes its ground and backdrop itself.
+const Wrapper<Studio>
+    studio("Studio", "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group osgGpuAnimation::Environment");
+const Wrapper<RaisedHome> home("RaisedHome", "osg::Object osg::Callback");
 
 } // namespace
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstring>
-#include <random>
+#include <numeric>
 #include <utility>
 
 namespace osgGpuAnimation::gltf

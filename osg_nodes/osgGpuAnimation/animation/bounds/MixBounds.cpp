@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/animation/bounds/MixBounds.h>
 
 #include <osgGpuAnimation/animation/bounds/JointRange.h>
+#include <osgGpuAnimation/animation/constraints/ConstraintChain.h>
 #include <osgGpuAnimation/math/Rotation.h>
 
 #include <glm/common.hpp>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/import/Drawables.h"
 
+#include "gltf/data/AnimationPointers.h"
 #include "gltf/data/MaterialVariants.h"
 #include "gltf/import/Influences.h"
 

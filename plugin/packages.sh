@@ -19,7 +19,7 @@ done
 if [ $# -eq 0 ] && [ -x tests/ports/windows.sh ]; then
     tests/ports/windows.sh
     mkdir -p "$out/windows"
-    cp build-windows/*.zip "$out/windows/"
+    find build-windows -maxdepth 2 -name "*.zip" -exec cp {} "$out/windows/" \;
 fi
 (cd "$out" && find . -type f ! -name SHA256SUMS -printf '%P\0' | sort -z | xargs -0 sha256sum >SHA256SUMS)
 cat "$out/SHA256SUMS"

@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/animation/Clip.h>
 #include <osgGpuAnimation/authoring/retarget/RigMatch.h>
 
+#include <array>
 #include <memory>
 #include <vector>
 

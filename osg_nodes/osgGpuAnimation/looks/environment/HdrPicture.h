@@ -5,6 +5,7 @@
 
 #include <osg/Image>
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 

@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 
 #include <osg/StateSet>
+#include <osg/Texture2D>
 #include <osg/Vec2>
 #include <osg/Vec4>
 

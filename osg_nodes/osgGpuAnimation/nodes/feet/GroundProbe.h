@@ -4,6 +4,7 @@
 #include <osg/Node>
 #include <osg/Vec3d>
 
+#include <memory>
 #include <optional>
 #include <vector>
 

@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/nodes/feet/GroundProbe.h>
 
 #include <osg/Matrixd>
+#include <osg/Quat>
 #include <osg/Vec3d>
 
 #include <optional>

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 # `cpack -G DEB` makes two Debian packages: the libraries, plugins and the tool; and what a program of one's own is built
-# with. Configure with -DCMAKE_INSTALL_PREFIX=/usr for Debian's own (multiarch) library folder.
+# with. `cpack -G ZIP` for Windows: everything beside the programs, OSG's viewer too. Configure with -DCMAKE_INSTALL_PREFIX=/usr for Debian's own (multiarch) library folder.
 set(CPACK_PACKAGE_NAME osggpuanimation)
 set(CPACK_PACKAGE_VENDOR "the osgGpuAnimation authors")
 set(CPACK_PACKAGE_CONTACT "the osgGpuAnimation authors")
-set(CPACK_RESOURCE_FILE_LICENSE ${CMAKE_SOURCE_DIR}/LICENSE)
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 set(CPACK_VERBATIM_VARIABLES ON)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_GENERATOR DEB)
@@ -31,8 +31,19 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "GPU skeletal animation for OpenSceneGraph: headers and CMake package
  For find_package(osgGpuAnimation) and #include <osgGpuAnimation/nodes/AnimatedCharacter.h>.")
 
-install(FILES ${CMAKE_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libosggpuanimation${PROJECT_VERSION_MAJOR}
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libosggpuanimation${PROJECT_VERSION_MAJOR}
         RENAME copyright COMPONENT runtime)
-install(FILES ${CMAKE_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libosggpuanimation-dev
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libosggpuanimation-dev
         RENAME copyright COMPONENT development)
+if(WIN32)
+    set(CPACK_GENERATOR ZIP)
+    get_filename_component(osg_folder ${OSG_INCLUDE_DIR} DIRECTORY)
+    install(PROGRAMS ${osg_folder}/bin/osgviewer.exe ${osg_folder}/bin/osgconv.exe DESTINATION ${CMAKE_INSTALL_BINDIR}
+            COMPONENT runtime OPTIONAL)
+    install(DIRECTORY ${osg_folder}/bin/${OSGPLUGINS_FOLDER} DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime OPTIONAL)
+    install(CODE "set(PROGRAMS ${CMAKE_INSTALL_BINDIR})
+                  set(FOLDERS ${osg_folder}/bin ${CMAKE_CXX_IMPLICIT_LINK_DIRECTORIES})
+                  set(OBJDUMP ${CMAKE_OBJDUMP})" COMPONENT runtime)
+    install(SCRIPT ${CMAKE_CURRENT_LIST_DIR}/windows/beside.cmake COMPONENT runtime)
+endif()
 include(CPack)

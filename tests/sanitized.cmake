@@ -20,7 +20,7 @@ set_target_properties(sanitized_tests PROPERTIES ENABLE_EXPORTS ON) # for GlCall
 target_include_directories(sanitized_tests PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
 target_compile_definitions(sanitized_tests PRIVATE OSGGPUANIMATION_SHARED_ASSETS="${OSGGPUANIMATION_SHARED_ASSETS}"
                            OSGGPUANIMATION_PLUGIN_FOLDER="${CMAKE_LIBRARY_OUTPUT_DIRECTORY}"
-                           OSGGPUANIMATION_SCENES="${CMAKE_SOURCE_DIR}/scenes")
+                           OSGGPUANIMATION_SCENES="${PROJECT_SOURCE_DIR}/scenes")
 add_dependencies(sanitized_tests osgdb_gltf osgdb_crowd osgdb_studio osgdb_serializers_osggpuanimation)
 # The rest of what is installed: clang has warnings of its own, which one build shows.
 foreach(installed osggpuanim osgdb_assimp osgdb_gpuanim)

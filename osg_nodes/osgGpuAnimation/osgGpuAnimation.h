@@ -42,8 +42,11 @@
 #include <osgGpuAnimation/authoring/WithClipsOf.h>
 #include <osgGpuAnimation/authoring/WithRootMotion.h>
 #include <osgGpuAnimation/frame/PoseStatistics.h>
+#if __has_include(<osgGpuAnimation/gpu/EglGraphicsContext.h>)
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
+#endif
 #include <osgGpuAnimation/gpu/FeedbackPass.h>
+#include <osgGpuAnimation/gpu/OffscreenContext.h>
 #include <osgGpuAnimation/gpu/PoseBatch.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/looks/CharacterProgram.h>

@@ -3,6 +3,8 @@
 
 #include "assimp/ConversionFrames.h"
 
+#include <osgGpuAnimation/math/detail/System.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
@@ -14,7 +16,6 @@
 #include <thread>
 #include <vector>
 
-#include <dlfcn.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <spawn.h>
@@ -225,11 +226,9 @@ std::optional<Result<std::string>> unpacked(std::string& output, gltf::Report& r
 
 std::filesystem::path folderOfThisModule()
 {
-    Dl_info info{};
     std::error_code failure;
-    std::filesystem::path module;
-    if (dladdr(reinterpret_cast<const void*>(&folderOfThisModule), &info) != 0 && info.dli_fname)
-        module = std::filesystem::canonical(info.dli_fname, failure);
+    const std::string path = system::moduleOf(reinterpret_cast<const void*>(&folderOfThisModule));
+    std::filesystem::path module = std::filesystem::canonical(path, failure);
     // A program may have been started by a name that is no path.
     if (module.empty() || failure) module = std::filesystem::canonical("/proc/self/exe", failure);
     return module.parent_path();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tool/PoseEvaluator.h"
 
-#include <osgGpuAnimation/gpu/EglGraphicsContext.h>
+#include <osgGpuAnimation/gpu/OffscreenContext.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/looks/CharacterProgram.h>
 #include <osgGpuAnimation/mesh/draw/PaletteBinding.h>
@@ -51,7 +51,7 @@ osg::ref_ptr<SkinnedGeometry> asPoints(const osg::Geometry* geometry)
 class GpuPoseEvaluator : public PoseEvaluator
 {
 public:
-    GpuPoseEvaluator(const gltf::ImportedModel& model, osg::ref_ptr<EglGraphicsContext> context,
+    GpuPoseEvaluator(const gltf::ImportedModel& model, osg::ref_ptr<osg::GraphicsContext> context,
                      PosePipeline& pipeline);
     ~GpuPoseEvaluator() override;
 
@@ -64,14 +64,14 @@ private:
     std::vector<glm::dvec3> capture(SkinnedGeometry& points);
 
     const gltf::ImportedModel& _model;
-    osg::ref_ptr<EglGraphicsContext> _context;
+    osg::ref_ptr<osg::GraphicsContext> _context;
     PosePipeline& _pipeline;
     osg::ref_ptr<osg::StateSet> _stateSet; ///< the capturing program and the character's palette
     /// One a primitive: its vertices in order, as points. Null if it is not drawn from the palette.
     std::vector<osg::ref_ptr<SkinnedGeometry>> _points;
 };
 
-GpuPoseEvaluator::GpuPoseEvaluator(const gltf::ImportedModel& model, osg::ref_ptr<EglGraphicsContext> context,
+GpuPoseEvaluator::GpuPoseEvaluator(const gltf::ImportedModel& model, osg::ref_ptr<osg::GraphicsContext> context,
                                    PosePipeline& pipeline)
     : _model(model), _context(std::move(context)), _pipeline(pipeline), _stateSet(new osg::StateSet)
 {
@@ -172,10 +172,11 @@ std::vector<glm::dvec3> GpuPoseEvaluator::capture(SkinnedGeometry& points)
 
 Result<std::unique_ptr<PoseEvaluator>> gpuPoseEvaluator(const gltf::ImportedModel& model)
 {
-    Result<osg::ref_ptr<EglGraphicsContext>> context = EglGraphicsContext::create(1, 1);
+    Result<osg::ref_ptr<osg::GraphicsContext>> context = createOffscreenContext(1, 1);
     if (!context) return context.error();
     if (!context.value()->realize() || !context.value()->makeCurrent())
         return Error{"the graphics context cannot be used"};
+    context.value()->getState()->initializeExtensionProcs();
     PosePipeline* pipeline = PosePipeline::of(*context.value()->getState());
     if (!pipeline) return Error{"the graphics context lacks OpenGL 3.3's transform feedback"};
     return std::unique_ptr<PoseEvaluator>(std::make_unique<GpuPoseEvaluator>(model, context.value(), *pipeline));

@@ -25,6 +25,12 @@ namespace osgGpuAnimation::tool
 namespace
 {
 
+#ifdef OSGGPUANIMATION_ASSIMP
+const char* const otherFormats = "";
+#else
+const char* const otherFormats = " (others need Assimp, without which this osgGpuAnimation was built)";
+#endif
+
 bool isCalledGltf(const std::string& fileName)
 {
     const std::string extension = osgDB::getLowerCaseFileExtension(fileName);
@@ -72,7 +78,7 @@ Result<gltf::ImportedModel> importFile(const std::string& fileName, const gltf::
     messages.warnings.insert(messages.warnings.end(), own.warnings.begin(), own.warnings.end());
     messages.notes.insert(messages.notes.end(), own.notes.begin(), own.notes.end());
     if (!imported && !isCalledGltf(fileName))
-        return Error{"the file is neither .gltf nor .glb: " + imported.error().message};
+        return Error{std::string("the file is neither .gltf nor .glb") + otherFormats + ": " + imported.error().message};
     if (!imported) return imported;
     if (!own.unmet.empty()) return Error{own.unmet.front()};
     gltf::ImportedModel model = std::move(imported).value();

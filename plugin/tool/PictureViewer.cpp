@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tool/PictureViewer.h"
 
-#include <osgGpuAnimation/gpu/EglGraphicsContext.h>
+#include <osgGpuAnimation/gpu/OffscreenContext.h>
 #include <osgGpuAnimation/nodes/viewing/StartView.h>
 
 #include <osg/BoundingBox>
@@ -143,7 +143,7 @@ Result<std::unique_ptr<PictureViewer>> PictureViewer::create(int width, int heig
     osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits;
     traits->width = width;
     traits->height = height;
-    const Result<osg::ref_ptr<EglGraphicsContext>> context = EglGraphicsContext::create(traits);
+    const Result<osg::ref_ptr<osg::GraphicsContext>> context = createOffscreenContext(traits);
     if (!context) return context.error();
 
     std::unique_ptr<PictureViewer> made(new PictureViewer);

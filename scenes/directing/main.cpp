@@ -11,7 +11,7 @@
 #include "Street.h"
 
 #include <osgGpuAnimation/animation/JointMask.h>
-#include <osgGpuAnimation/gpu/EglGraphicsContext.h>
+#include <osgGpuAnimation/gpu/OffscreenContext.h>
 #include <osgGpuAnimation/looks/Environment.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
@@ -250,7 +250,7 @@ Result<osg::ref_ptr<osg::Image>> drawn(osg::Node* scene, Environment* surroundin
     traits->height = sight.pictureHeight;
     traits->samples = 4;
     traits->sampleBuffers = 1;
-    const Result<osg::ref_ptr<EglGraphicsContext>> context = EglGraphicsContext::create(traits);
+    const Result<osg::ref_ptr<osg::GraphicsContext>> context = createOffscreenContext(traits);
     if (!context) return context.error();
     osgViewer::Viewer viewer;
     viewer.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
@@ -341,7 +341,7 @@ int main(int argc, char** argv)
     }
     const bool isViewed = std::string(argv[1]) == "--view";
     const std::string scenes = argv[isViewed ? 2 : 1], folder = argv[2];
-    if (!isViewed && !succeeds(EglGraphicsContext::create(width, height))) return 77;
+    if (!isViewed && !succeeds(createOffscreenContext(width, height))) return 77;
     const osg::ref_ptr<osg::Node> model =
         osgDB::readRefNodeFile(scenes + "/Wanderer.glb", new osgDB::Options("noKeys"));
     if (!model) return 1;

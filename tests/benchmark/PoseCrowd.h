@@ -5,8 +5,8 @@
 
 #include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/gpu/buffers/BufferTexture.h>
-#include <osgGpuAnimation/gpu/EglGraphicsContext.h>
 #include <osgGpuAnimation/gpu/FeedbackPass.h>
+#include <osgGpuAnimation/gpu/OffscreenContext.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 
 #include <memory>

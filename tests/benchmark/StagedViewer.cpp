@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "StagedViewer.h"
 
-#include <osgGpuAnimation/gpu/EglGraphicsContext.h>
+#include <osgGpuAnimation/gpu/OffscreenContext.h>
 
 #include <osgUtil/GLObjectsVisitor>
 #include <osgViewer/Renderer>
@@ -33,7 +33,7 @@ void requireNoGlErrors()
 StagedViewer::StagedViewer(osg::Node* scene, const osg::BoundingSphere& sight, int width, int height) : _sight(sight)
 {
     if (height == 0) height = width;
-    _context = taken(EglGraphicsContext::create(width, height));
+    _context = taken(createOffscreenContext(width, height));
     _viewer.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
     _viewer.setReleaseContextAtEndOfFrameHint(false);
     osg::Camera* camera = _viewer.getCamera();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "Measurements.h"
 
-#include <osgGpuAnimation/gpu/EglGraphicsContext.h>
+#include <osgGpuAnimation/gpu/OffscreenContext.h>
 
 #include <osg/ArgumentParser>
 #include <osg/Notify>
@@ -140,7 +140,7 @@ void keepFreedMemory()
 int run(const Request& request)
 {
     if (!request.returnsMemory) keepFreedMemory();
-    const osg::ref_ptr<EglGraphicsContext> context = taken(EglGraphicsContext::create(64, 64));
+    const osg::ref_ptr<osg::GraphicsContext> context = taken(createOffscreenContext(64, 64));
     if (!context->realize() || !context->makeCurrent()) throw std::runtime_error("the GL context does not realize");
     const std::map<std::string, std::string> machine = describeMachine();
     Report report;

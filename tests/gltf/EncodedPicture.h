@@ -3,7 +3,9 @@
 
 #include <osg/Image>
 #include <osgDB/Registry>
+#if OSGGPUANIMATION_WITH_WEBP
 #include <webp/encode.h>
+#endif
 
 #include <cstddef>
 #include <cstdint>
@@ -13,6 +15,7 @@
 namespace osgGpuAnimation
 {
 
+#if OSGGPUANIMATION_WITH_WEBP
 /// WebP, which OSG does not write; for encodedPicture().
 inline std::string encodedWebp(osg::Image& image, bool isLossless)
 {
@@ -28,6 +31,13 @@ inline std::string encodedWebp(osg::Image& image, bool isLossless)
     WebPFree(bytes);
     return text;
 }
+#else
+/// A header alone.
+inline std::string encodedWebp(osg::Image&, bool)
+{
+    return "RIFF----WEBP" + std::string(20, '-');
+}
+#endif
 
 /// The file content of a picture whose upper half is red and whose lower half is blue; 1 and 0 in grey formats. In
 /// formats with alpha, the lower half is transparent by half.

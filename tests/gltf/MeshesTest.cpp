@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/import/Meshes.h"
+#include "gltf/data/Meshoptimizer.h"
 #include "gltf/import/Influences.h"
 #include "gltf/import/TriangleMesh.h"
 #include "gltf/ImportedFile.h"

@@ -120,6 +120,8 @@ std::string manyScans()
     return bytes;
 }
 
+const char* const withoutWebp = "a WebP (EXT_texture_webp) needs libwebp, without which this osgGpuAnimation was built";
+
 struct Fault
 {
     const char* name;
@@ -144,6 +146,7 @@ TEST(PictureTest, tellsFormatAndSize)
                           {losslessWebp(4096, 4095, 20), "image/webp", 4096, 4095, std::size_t(4) * 4096 * 4095}};
     for (const Case& each : cases)
     {
+        if (!OSGGPUANIMATION_WITH_WEBP && std::strcmp(each.mimeType, "image/webp") == 0) continue;
         const auto header = valueOf(read(each.bytes));
         EXPECT_EQ(header.mimeType, each.mimeType);
         EXPECT_EQ(header.width, each.width);
@@ -196,7 +199,8 @@ TEST(PictureTest, refusesBombsAndDamage)
     for (const Fault& fault : faults)
     {
         SCOPED_TRACE(fault.name);
-        EXPECT_TRUE(hasError(decodeImage(fault.bytes), fault.message));
+        const bool isRead = OSGGPUANIMATION_WITH_WEBP || std::strstr(fault.name, "WebP") == nullptr;
+        EXPECT_TRUE(hasError(decodeImage(fault.bytes), isRead ? fault.message : withoutWebp));
     }
     for (const std::string& file : {png(largest, 1, 1000), png(1, largest, 1000), jpeg(largest, 1, 1000),
                                     jpeg(1, largest, 1000), jpeg(16000, 16000, 500000)})
@@ -210,6 +214,7 @@ TEST(PictureTest, decodesEachFormat)
         {"webp", GL_RGBA}, {"lossless.webp", GL_RGB}, {"lossless.webp", GL_RGBA}};
     for (const auto& [kind, format] : cases)
     {
+        if (!OSGGPUANIMATION_WITH_WEBP && std::strstr(kind, "webp")) continue;
         SCOPED_TRACE(kind);
         const std::string bytes = encodedPicture(kind, 64, 64, format);
         const auto image = valueOf(decodeImage(bytes));

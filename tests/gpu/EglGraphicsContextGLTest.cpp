@@ -71,7 +71,7 @@ TEST_F(EglGraphicsContextGLTest, isACompatibilityContextThatOsgKnows)
 {
     ASSERT_TRUE(context().valid());
     EXPECT_TRUE(context().isRealized());
-    EXPECT_FALSE(context().isCoreProfile());
+    EXPECT_FALSE(static_cast<EglGraphicsContext&>(context()).isCoreProfile());
     const osg::GLExtensions* extensions = state().get<osg::GLExtensions>();
     ASSERT_NE(extensions, nullptr);
     EXPECT_GE(extensions->glVersion, 3.3f);
@@ -182,7 +182,7 @@ TEST_F(EglGraphicsContextGLTest, refusesWhatCannotBe)
 
 TEST_F(CoreContextGLTest, isACoreContext)
 {
-    EXPECT_TRUE(context().isCoreProfile());
+    EXPECT_TRUE(static_cast<EglGraphicsContext&>(context()).isCoreProfile());
     EXPECT_TRUE(state().getUseModelViewAndProjectionUniforms());
     EXPECT_EQ(clearAndRead(1.0f, 0.2f, 0.0f), (Colour{255, 51, 0, 255}));
     EXPECT_NO_GL_ERROR();

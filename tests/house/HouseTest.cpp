@@ -44,7 +44,7 @@ struct Libraries
 const Libraries libraries[] = {
     {"osg_nodes/osgGpuAnimation/(math|animation|authoring)/",
      R"(^(osg|osg[A-Z]\w*|GL|EGL|OpenThreads|nlohmann)/|^tiny_gltf)"},
-    {"osg_nodes/osgGpuAnimation/gpu/", R"(^tiny_gltf|^osg(Viewer|DB|GA)/)"},
+    {"osg_nodes/osgGpuAnimation/gpu/(?!without/)", R"(^tiny_gltf|^osg(Viewer|DB|GA)/)"},
     {"osg_nodes/osgGpuAnimation/(scene|looks|mesh|frame|nodes)/", R"(^tiny_gltf|^osgDB/)"},
     {"plugin/gltf/", R"(^osgViewer/)"},
 };

@@ -217,7 +217,7 @@ public:
     {
         osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits;
         traits->width = traits->height = side;
-        context = EglGraphicsContext::create(traits).value();
+        context = createOffscreenContext(traits).value();
         const osg::ref_ptr<osgViewer::View> view = new osgViewer::View;
         osg::Camera& camera = *view->getCamera();
         camera.setGraphicsContext(context);
@@ -231,7 +231,7 @@ public:
         viewer.addView(view);
     }
 
-    osg::ref_ptr<EglGraphicsContext> context;
+    osg::ref_ptr<osg::GraphicsContext> context;
     osg::ref_ptr<Picture> picture = new Picture;
 };
 

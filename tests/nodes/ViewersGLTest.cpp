@@ -37,12 +37,12 @@ osg::ref_ptr<osg::Group> makeScene()
     return group;
 }
 
-osg::ref_ptr<EglGraphicsContext> makeContext(EglGraphicsContext* shared = nullptr)
+osg::ref_ptr<osg::GraphicsContext> makeContext(osg::GraphicsContext* shared = nullptr)
 {
     osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits;
     traits->width = traits->height = 64;
     traits->sharedContext = shared;
-    return EglGraphicsContext::create(traits.get()).value();
+    return createOffscreenContext(traits.get()).value();
 }
 
 void setCamera(osg::Camera& camera, osg::GraphicsContext* context, Picture* picture)
@@ -56,7 +56,7 @@ void setCamera(osg::Camera& camera, osg::GraphicsContext* context, Picture* pict
 }
 
 /// Adds a view of the scene on that context, and returns its picture.
-osg::ref_ptr<Picture> addView(osgViewer::CompositeViewer& viewers, osg::Node* scene, EglGraphicsContext* context)
+osg::ref_ptr<Picture> addView(osgViewer::CompositeViewer& viewers, osg::Node* scene, osg::GraphicsContext* context)
 {
     osg::ref_ptr<Picture> picture = new Picture;
     osg::ref_ptr<osgViewer::View> view = new osgViewer::View;
@@ -109,8 +109,8 @@ class TwoContextsGLTest : public ViewersGLTest, public ::testing::WithParamInter
 TEST_P(TwoContextsGLTest, aSlaveCameraOnAContextOfItsOwnShowsTheSameUnderEveryThreadingModel)
 {
     const osg::ref_ptr<osg::Image> expected = expectedPicture();
-    osg::ref_ptr<EglGraphicsContext> first = makeContext();
-    osg::ref_ptr<EglGraphicsContext> second = makeContext(GetParam().areShared ? first.get() : nullptr);
+    osg::ref_ptr<osg::GraphicsContext> first = makeContext();
+    osg::ref_ptr<osg::GraphicsContext> second = makeContext(GetParam().areShared ? first.get() : nullptr);
     osg::ref_ptr<Picture> ofFirst = new Picture, ofSecond = new Picture;
     osgViewer::Viewer both;
     both.setKeyEventSetsDone(0);
@@ -161,8 +161,8 @@ TEST_F(ViewersGLTest, contextsThatShareEvaluateTheirOwnCharactersWithoutErrors)
     {
         osgViewer::CompositeViewer composite;
         composite.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
-        const osg::ref_ptr<EglGraphicsContext> first = makeContext();
-        const osg::ref_ptr<EglGraphicsContext> contexts[] = {first, makeContext(first)};
+        const osg::ref_ptr<osg::GraphicsContext> first = makeContext();
+        const osg::ref_ptr<osg::GraphicsContext> contexts[] = {first, makeContext(first)};
         const osg::ref_ptr<Picture> pictures[] = {addView(composite, makeScene(), contexts[0]),
                                                   addView(composite, makeScene(), contexts[1])};
         draw(composite);
@@ -210,7 +210,7 @@ TEST_F(ViewersGLTest, aWindowIsClosedAndOpenedAgainOverOneScene)
     for (int round = 0; round < 3; ++round)
     {
         osg::ref_ptr<Picture> picture = new Picture;
-        osg::ref_ptr<EglGraphicsContext> window = makeContext();
+        osg::ref_ptr<osg::GraphicsContext> window = makeContext();
         setCamera(*other.getCamera(), window, picture);
         other.setSceneData(scene);
         draw(other);
@@ -228,7 +228,7 @@ TEST_F(ViewersGLTest, anotherViewersFrameOfTheSameNumberHasItsOwnCharactersAlone
     const osg::ref_ptr<osg::Node> scenes[] = {makeScene(), makeScene()};
     for (const int round : {0, 1})
     {
-        osg::ref_ptr<EglGraphicsContext> window = makeContext();
+        osg::ref_ptr<osg::GraphicsContext> window = makeContext();
         osgViewer::Viewer other;
         other.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
         other.setReleaseContextAtEndOfFrameHint(false);

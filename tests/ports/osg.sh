@@ -1,18 +1,30 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Usage: tests/ports/osg.sh [TEST...]
-# Builds Debian's OSG without the fixed pipeline (OPENGL_PROFILE=GLCORE, from its source package) and this kit with it in
-# build-osg/, and runs the GL tests there, or those whose names match the regular expressions TEST. What build-osg/ has
-# already is kept and used again. The first time takes 40 minutes on two processors. Exit status 0: the tests passed.
+# Usage: tests/ports/osg.sh [core|float|static] [TEST...]
+# Builds Debian's OSG otherwise, from its source package, and this kit with it:
+#   core    without the fixed pipeline (OPENGL_PROFILE=GLCORE), in build-osg/
+#   float   with float matrices, planes and quaternions (OSG_USE_FLOAT_MATRIX and so on), in build-osg-float/
+#   static  static libraries and plugins, and with them tests/install/embedded, in build-osg-static/
+# and runs the GL tests there, or those whose names match the regular expressions TEST; for `static`, the program embedded.
+# What the folder has already is kept and used again. The first time takes 40 minutes on two processors. Exit status 0:
+# the tests passed.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../setup.sh"
+source "$root/tests/ports/sources.sh"
 
-folder=$root/build-osg
-source=$folder/source
+variant=core
+if [[ "${1:-}" =~ ^(core|float|static)$ ]]; then
+    variant=$1
+    shift
+fi
+folder=$root/build-osg-$variant
+[ $variant != core ] || folder=$root/build-osg
+source=$root/build-osg/sources/openscenegraph # of all variants
 osg=$folder/osg
 build=$folder/kit
-# Tests that compare with what this OSG lacks or does otherwise.
-without=(
+# Tests that compare with what this OSG lacks or does otherwise; for float matrices, none is known yet.
+without=(nothing)
+[ $variant != core ] || without=(
     # the fixed pipeline's look, a compatibility profile, drawables of a host without shaders
     '(SurfaceGLTest|SurfaceNeedGLTest|PlacedSurfacesGLTest|ProfilesGLTest)' EglGraphicsContextGLTest.isACompat
     ProfileGLTest.osgsLights EnvironmentGLTest.even HostGLTest.hooksApplyInDepth ShaderKeyGLTest.holes
@@ -32,27 +44,18 @@ without=(
     FirstDrawGLTest.theFirstFrame ReadmeStartGLTest.aSceneIsCompiled
 )
 
-fetch_source()
-{
-    local options=(-o "Dir::Etc::SourceList=$folder/sources.list" -o Dir::Etc::SourceParts=/dev/null
-        -o "Dir::State::Lists=$folder/lists")
-    mkdir -p "$folder/lists/partial"
-    apt-get indextargets --format 'deb-src $(REPO_URI) $(RELEASE) $(COMPONENT)' 'Created-By: Packages' 'Origin: Debian' |
-        grep ' main$' | sort -u >"$folder/sources.list"
-    apt-get "${options[@]}" update -q
-    rm -rf "$folder/fetched"
-    mkdir "$folder/fetched"
-    (cd "$folder/fetched" && apt-get "${options[@]}" source -q openscenegraph)
-    mv "$folder"/fetched/openscenegraph-* "$source"
-}
-
 # The libraries that the kit links and the plugins that its tests need.
 build_osg()
 {
     local libraries=(OpenThreads osg osgUtil osgDB osgGA osgText osgViewer osgAnimation osgShadow osgFX)
     local formats=(osg png jpeg rgb hdr bmp tga rot)
     local plugins=("${formats[@]/#/osgdb_}" osgdb_serializers_osg{,animation,viewer,shadow,fx})
-    local options=(-DOPENGL_PROFILE=GLCORE -DBUILD_OSG_APPLICATIONS=OFF -DBUILD_OSG_PLUGINS_BY_DEFAULT=OFF -Wno-dev)
+    local options=(-DBUILD_OSG_APPLICATIONS=OFF -DBUILD_OSG_PLUGINS_BY_DEFAULT=OFF -Wno-dev)
+    case $variant in
+        core) options+=(-DOPENGL_PROFILE=GLCORE) ;;
+        float) options+=(-DOSG_USE_FLOAT_{MATRIX,PLANE,QUAT}=ON) ;;
+        static) options+=(-DDYNAMIC_OPENTHREADS=OFF -DDYNAMIC_OPENSCENEGRAPH=OFF) ;;
+    esac
     for format in "${formats[@]}"; do
         options+=("-DBUILD_OSG_PLUGIN_${format^^}=ON")
     done
@@ -65,9 +68,19 @@ build_osg()
 
 install_missing "${view_packages[@]}" "${test_packages[@]}" libx11-dev libxrandr-dev
 mkdir -p "$folder"
-[ -d "$source" ] || fetch_source
+fetch_sources "$root/build-osg" openscenegraph
 [ -d "$osg/lib" ] || build_osg
 export OSG_DIR=$osg LD_LIBRARY_PATH=$osg/lib
+if [ $variant = static ]; then
+    # Static libraries need each other, and the system's; -DOSG_LIBRARY_STATIC makes main.cpp name OSG's plugins.
+    libraries=("$osg"/lib/*.a "$osg"/lib/osgPlugins-*/*.a)
+    others=(-lpng -ljpeg -lz -lfontconfig -lX11 -lXrandr -lXinerama -lXext -lGL -ldl -lpthread)
+    cmake -S "$root/tests/install/embedded" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DOSGGPUANIMATION_UNITY=ON \
+        -DCMAKE_CXX_FLAGS=-DOSG_LIBRARY_STATIC \
+        "-DCMAKE_CXX_STANDARD_LIBRARIES=-Wl,--start-group ${libraries[*]} -Wl,--end-group ${others[*]}"
+    cmake --build "$build" --parallel "$(nproc)" --target embedded
+    exec "$build/embedded" "$root/scenes/Wanderer.glb" "$build/Wanderer.osgt"
+fi
 configure_release -DBUILD_TESTING=ON
 build_targets
 [ $# -eq 0 ] || without=(nothing)

@@ -8,7 +8,7 @@
 // error, and at most 2 % growth.
 #include "support/ThreadingModels.h"
 
-#include <osgGpuAnimation/gpu/EglGraphicsContext.h>
+#include <osgGpuAnimation/gpu/OffscreenContext.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/OutfitsFile.h>
@@ -225,7 +225,7 @@ public:
     {
         std::uniform_int_distribution<int> size(100, 500);
         const int width = size(_random), height = size(_random), half = width / 2;
-        const Result<osg::ref_ptr<EglGraphicsContext>> window = EglGraphicsContext::create(width, height);
+        const Result<osg::ref_ptr<osg::GraphicsContext>> window = createOffscreenContext(width, height);
         if (!window)
         {
             std::cerr << window.error().message << std::endl;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/gpu/EglGraphicsContext.h>
+#include <osgGpuAnimation/gpu/OffscreenContext.h>
 
 #include <osg/GL>
 #include <osg/State>
@@ -16,13 +16,13 @@
 namespace osgGpuAnimation
 {
 
-/// A test that needs GL: it starts with an EglGraphicsContext of 64x64 current, and fails if GL reports an error that
+/// A test that needs GL: it starts with an offscreen context of 64x64 current, and fails if GL reports an error that
 /// it left behind. Test classes that derive from it (or are it) are named ...GLTest.
 ///
 ///     using PosePipelineGLTest = GLTest;
 ///     TEST_F(PosePipelineGLTest, writesOneEntryAJoint) { … context().getState() … EXPECT_NO_GL_ERROR(); }
 ///
-/// Without a context the test is skipped with EGL's reason; with OSGGPUANIMATION_REQUIRE_GL in the environment, as in
+/// Without a context the test is skipped with the reason; with OSGGPUANIMATION_REQUIRE_GL in the environment, as in
 /// CI, it fails.
 class GLTest : public ::testing::Test
 {
@@ -41,7 +41,7 @@ protected:
 
     void SetUp() override
     {
-        Result<osg::ref_ptr<EglGraphicsContext>> made = EglGraphicsContext::create(traits().get());
+        Result<osg::ref_ptr<osg::GraphicsContext>> made = createOffscreenContext(traits().get());
         const std::string reason = made ? "the context does not realize" : made.error().message;
         if (!made || !made.value()->realize() || !made.value()->makeCurrent())
         {
@@ -49,6 +49,7 @@ protected:
             GTEST_SKIP() << "no GL: " << reason;
         }
         _context = made.value();
+        state().initializeExtensionProcs();
         const char* expected = std::getenv("OSGGPUANIMATION_RENDERER"); // see tests/zink.sh
         const std::string renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
         ASSERT_TRUE(!expected || renderer.find(expected) != std::string::npos) << renderer;
@@ -65,7 +66,7 @@ protected:
         _context = nullptr;
     }
 
-    EglGraphicsContext& context() { return *_context; }
+    osg::GraphicsContext& context() { return *_context; }
     osg::State& state() { return *_context->getState(); }
 
     /// Takes the pending errors from GL, as "0x0502 …"; empty if there are none.
@@ -82,7 +83,7 @@ protected:
     }
 
 private:
-    osg::ref_ptr<EglGraphicsContext> _context;
+    osg::ref_ptr<osg::GraphicsContext> _context;
 };
 
 /// The fixture in a context of the core profile.

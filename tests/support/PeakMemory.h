@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#ifndef _WIN32
 #include <sys/resource.h>
+#endif
 
 namespace osgGpuAnimation
 {
@@ -23,15 +25,22 @@ constexpr double slowdown = isSanitized ? 20.0 : 5.0;
 constexpr long mostMebibytes = 512;
 constexpr double mostSeconds = 5.0 * slowdown;
 
+/// The peak memory of this process, in MiB.
+#ifdef _WIN32
+constexpr bool memoryIsMeasurable = false;
+inline long peakMemory()
+{
+    return 0;
+}
+#else
 /// A sanitizer delays frees and adds shadow memory.
 constexpr bool memoryIsMeasurable = !isSanitized;
-
-/// The peak memory of this process, in MiB.
 inline long peakMemory()
 {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     return usage.ru_maxrss / 1024;
 }
+#endif
 
 } // namespace osgGpuAnimation

@@ -4,7 +4,7 @@ set(OSGGPUANIMATION_NODE_MODULES "" CACHE PATH
     "Folder node_modules with the npm package gltf-validator: written .glb files are validated where it exists")
 find_program(NODE_PROGRAM node)
 if(NODE_PROGRAM AND EXISTS "${OSGGPUANIMATION_NODE_MODULES}/gltf-validator/package.json")
-    file(GLOB validated_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/scenes/*.glb ${OSGGPUANIMATION_SHARED_ASSETS}/assets/*/*.gl*
+    file(GLOB validated_files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/scenes/*.glb ${OSGGPUANIMATION_SHARED_ASSETS}/assets/*/*.gl*
          ${OSGGPUANIMATION_SHARED_ASSETS}/assets/*/*.fbx ${OSGGPUANIMATION_SHARED_ASSETS}/assets/*/*.bvh)
     if(NOT TARGET osgGpuAnimation_assimp)
         list(FILTER validated_files INCLUDE REGEX "\\.gl")

@@ -3,10 +3,9 @@
 
 #include "gltf/data/Accessor.h"
 #include "gltf/data/DracoMesh.h"
+#include "gltf/data/Meshoptimizer.h"
 #include "gltf/file/Elements.h"
 #include "gltf/file/Report.h"
-
-#include <meshoptimizer.h>
 
 #include <algorithm>
 #include <string>
@@ -35,21 +34,19 @@ const std::size_t bestRatio = 256;
 const unsigned char vertexCodec1 = 0xa1; // the first byte of its data (KHR_meshopt_compression, appendix A)
 
 /// One compressed view, its numbers in the ranges that the schema allows.
-struct Compressed
+struct Compressed : MeshoptElements
 {
     std::size_t buffer = 0;
     std::size_t byteOffset = 0;
     std::size_t byteLength = 0;
-    std::size_t stride = 0;
-    std::size_t count = 0;
-    std::string_view mode;
-    std::string_view filter;
 
     explicit Compressed(const JsonValue& json)
-        : buffer(static_cast<std::size_t>(json["buffer"].number())),
-          byteLength(static_cast<std::size_t>(json["byteLength"].number())),
-          stride(static_cast<std::size_t>(json["byteStride"].number())),
-          count(static_cast<std::size_t>(json["count"].number())), mode(json["mode"].text())
+        : MeshoptElements{static_cast<std::size_t>(json["byteStride"].number()),
+                          static_cast<std::size_t>(json["count"].number()),
+                          json["mode"].text(),
+                          {}},
+          buffer(static_cast<std::size_t>(json["buffer"].number())),
+          byteLength(static_cast<std::size_t>(json["byteLength"].number()))
     {
         if (const JsonValue offset = json["byteOffset"]) byteOffset = static_cast<std::size_t>(offset.number());
         if (const JsonValue given = json["filter"]) filter = given.text();
@@ -111,20 +108,6 @@ std::optional<Error> check(const Compressed& view, const tinygltf::BufferView& p
     return std::nullopt;
 }
 
-bool decode(const Compressed& view, const Bytes& source, Bytes& out)
-{
-    const unsigned char* const from = source.data() + view.byteOffset;
-    if (view.mode == "TRIANGLES")
-        return meshopt_decodeIndexBuffer(out.data(), view.count, view.stride, from, view.byteLength) == 0;
-    if (view.mode == "INDICES")
-        return meshopt_decodeIndexSequence(out.data(), view.count, view.stride, from, view.byteLength) == 0;
-    if (meshopt_decodeVertexBuffer(out.data(), view.count, view.stride, from, view.byteLength) != 0) return false;
-    if (view.filter == "OCTAHEDRAL") meshopt_decodeFilterOct(out.data(), view.count, view.stride);
-    if (view.filter == "QUATERNION") meshopt_decodeFilterQuat(out.data(), view.count, view.stride);
-    if (view.filter == "EXPONENTIAL") meshopt_decodeFilterExp(out.data(), view.count, view.stride);
-    return true;
-}
-
 std::optional<Error> decompress(const Compressed& view, std::size_t index, const std::string& name,
                                 MemoryBudget& budget, Model& model)
 {
@@ -133,7 +116,8 @@ std::optional<Error> decompress(const Compressed& view, std::size_t index, const
     if (std::optional<Error> error = check(view, parent, source, name)) return error;
     if (!budget.take(parent.byteLength)) return fault(name, budget.limitText(), std::to_string(parent.byteLength));
     Bytes out(parent.byteLength);
-    if (!decode(view, source, out)) return fault(name, "data that meshoptimizer can decode", "other data");
+    const Result<void> decoded = decodeMeshopt(view, source.data() + view.byteOffset, view.byteLength, out);
+    if (!decoded) return Error{name + ": " + decoded.error().message};
     parent.buffer = static_cast<int>(model.buffers.size());
     parent.byteOffset = 0;
     model.buffers.emplace_back().data = std::move(out);

@@ -2,6 +2,7 @@
 #include "gltf/data/LoadImages.h"
 
 #include "gltf/data/Picture.h"
+#include "gltf/data/PictureCodecs.h"
 #include "gltf/file/Elements.h"
 
 #include <string>
@@ -89,13 +90,19 @@ const OtherFormat otherFormats[] = {
     {"KHR_texture_basisu", "KTX2"}, {"MSFT_texture_dds", "DDS"}, {"EXT_texture_avif", "AVIF"}};
 
 /// One flag for each image: true if only textures' extensions for other formats name it. Warns of textures that have
-/// no other picture.
-std::vector<bool> imagesOfOtherFormats(const JsonValue& document, const tinygltf::Model& model, Report& report)
+/// no other picture. Without libwebp, textures show their other picture.
+std::vector<bool> imagesOfOtherFormats(const JsonValue& document, tinygltf::Model& model, Report& report)
 {
     std::vector<bool> isOther(document["images"] ? document["images"].size() : 0);
     std::size_t i = 0;
     for (const JsonValue& texture : document["textures"])
     {
+        if (const JsonValue webp = texture["extensions"]["EXT_texture_webp"]["source"], other = texture["source"];
+            !readsWebp && webp && other)
+        {
+            isOther[static_cast<std::size_t>(webp.number())] = true;
+            model.textures[i].source = static_cast<int>(other.number());
+        }
         const bool hasPicture = model.textures[i].source >= 0;
         for (const OtherFormat& format : otherFormats)
             if (const JsonValue source = texture["extensions"][format.extension]["source"])

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "gltf/data/PictureHeader.h"
+
 #include <osgGpuAnimation/math/Result.h>
 
 #include <osg/Image>
 
-#include <cstddef>
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -15,17 +15,6 @@ namespace osgGpuAnimation::gltf
 
 // PNG, JPEG and WebP, decoded by libpng, libjpeg-turbo and libwebp: OSG's own readers leak memory over damaged pictures
 // and do not know WebP.
-
-/// Format and size of a picture before it is decoded.
-struct PictureHeader
-{
-    static constexpr std::uint32_t maxPixelsPerSide = 16384;
-
-    std::string mimeType; ///< by the bytes: image/png, image/jpeg or image/webp
-    std::uint32_t width = 0;
-    std::uint32_t height = 0;
-    std::size_t decodedBytes = 0; ///< with four channels of the depth that the file has
-};
 
 /// Reads the header of a PNG, JPEG or WebP and checks its size against the length of the data, so that a few bytes
 /// cannot make the decoder allocate gigabytes. A WebP of up to 4096 x 4096 pixels may be of any length: lossless ones

@@ -2,14 +2,10 @@
 #include "gltf/export/PictureWriter.h"
 
 #include "gltf/data/Picture.h"
-
-#include <osg/Endian>
-#include <png.h>
+#include "gltf/data/PictureCodecs.h"
 
 #include <algorithm>
-#include <csetjmp>
 #include <utility>
-#include <vector>
 
 namespace osgGpuAnimation::gltf
 {
@@ -55,49 +51,6 @@ osg::ref_ptr<osg::Image> asRgba(const osg::Image& image)
     return rgba;
 }
 
-class PngEncoder
-{
-public:
-    PngEncoder()
-    {
-        _png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, leaveByError, ignoreWarning);
-        if (_png) _info = png_create_info_struct(_png);
-    }
-    ~PngEncoder() { png_destroy_write_struct(&_png, &_info); }
-    PngEncoder(const PngEncoder&) = delete;
-    PngEncoder& operator=(const PngEncoder&) = delete;
-
-    /// rows: from the top.
-    bool write(png_bytepp rows, const osg::Image& image, int channels, std::string& out);
-
-private:
-    static void leaveByError(png_structp png, png_const_charp) { png_longjmp(png, 1); }
-    static void ignoreWarning(png_structp, png_const_charp) {}
-    static void append(png_structp png, png_bytep from, png_size_t count)
-    {
-        static_cast<std::string*>(png_get_io_ptr(png))->append(reinterpret_cast<const char*>(from), count);
-    }
-    static void flush(png_structp) {}
-
-    png_structp _png = nullptr;
-    png_infop _info = nullptr;
-};
-
-bool PngEncoder::write(png_bytepp rows, const osg::Image& image, int channels, std::string& out)
-{
-    constexpr int types[] = {PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_GRAY_ALPHA, PNG_COLOR_TYPE_RGB, PNG_COLOR_TYPE_RGBA};
-    const bool isWide = image.getDataType() == GL_UNSIGNED_SHORT;
-    if (!_info || setjmp(png_jmpbuf(_png)) != 0) return false;
-    png_set_write_fn(_png, &out, append, flush);
-    png_set_IHDR(_png, _info, static_cast<png_uint_32>(image.s()), static_cast<png_uint_32>(image.t()), isWide ? 16 : 8,
-                 types[channels - 1], PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    png_write_info(_png, _info);
-    if (isWide && osg::getCpuByteOrder() == osg::LittleEndian) png_set_swap(_png);
-    png_write_image(_png, rows);
-    png_write_end(_png, nullptr);
-    return true;
-}
-
 /// A stand-in of programs that always sample a texture.
 bool isOneWhitePixel(const osg::Image& image)
 {
@@ -118,13 +71,8 @@ Result<std::string> encodePng(const osg::Image& image)
     if (image.isCompressed()) return Error{"its format is compressed"};
     const osg::ref_ptr<const osg::Image> picture = pngChannels(image) > 0 ? &image : asRgba(image);
     if (!picture) return Error{"not enough memory"};
-    const bool isTopFirst = picture->getOrigin() == osg::Image::TOP_LEFT;
-    std::vector<png_bytep> rows;
-    for (int y = 0; y < picture->t(); ++y)
-        rows.push_back(
-            const_cast<png_bytep>(picture->data(0, static_cast<unsigned int>(isTopFirst ? y : picture->t() - 1 - y))));
-    std::string bytes;
-    if (!PngEncoder().write(rows.data(), *picture, pngChannels(*picture), bytes)) return Error{"PNG refuses it"};
+    std::string bytes = writePng(*picture, pngChannels(*picture));
+    if (bytes.empty()) return Error{"PNG refuses it"};
     return bytes;
 }
 

@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/file/ModelBytes.h"
 
+#include <osgGpuAnimation/math/detail/System.h>
+
 #include <algorithm>
-#include <cerrno>
-#include <cstdint>
-#include <cstring>
-#include <fcntl.h>
 #include <istream>
-#include <sys/stat.h>
-#include <unistd.h>
-#include <utility>
 
 namespace osgGpuAnimation::gltf
 {
@@ -25,19 +20,6 @@ const std::uint64_t maxBytesOfAFile = std::uint64_t(1) << 32;
 Error about(const std::string& path, const std::string& what)
 {
     return Error{subjectOfFile(path) + what};
-}
-
-std::string kindText(mode_t mode)
-{
-    if (S_ISDIR(mode)) return "expected a regular file, found a folder";
-    if (S_ISFIFO(mode)) return "expected a regular file, found a pipe";
-    return "expected a regular file, found a device or socket";
-}
-
-std::string systemText(int code)
-{
-    if (code == ENOENT || code == ENOTDIR) return "the file does not exist";
-    return std::string("the file cannot be opened: ") + std::strerror(code);
 }
 
 const std::string_view magic = "glTF";
@@ -128,38 +110,24 @@ std::string subjectOfFile(const std::string& path)
 
 Result<RegularFile> RegularFile::open(const std::string& path)
 {
-    struct stat status;
-    // Checked before opening, because opening a device can have an effect.
-    if (::stat(path.c_str(), &status) != 0) return about(path, systemText(errno));
-    if (!S_ISREG(status.st_mode)) return about(path, kindText(status.st_mode));
-    const int descriptor = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
-    if (descriptor < 0) return about(path, systemText(errno));
-    RegularFile file(descriptor, 0, path);
-    if (::fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) return about(path, kindText(status.st_mode));
-    file._size = static_cast<std::size_t>(status.st_size);
-    return file;
-}
-
-RegularFile::RegularFile(int descriptor, std::size_t size, std::string path)
-    : _descriptor(descriptor), _size(size), _path(std::move(path))
-{
+    const Result<system::File> file = system::openRegularFile(path);
+    if (!file) return about(path, file.error().message);
+    return RegularFile(file.value().handle, static_cast<std::size_t>(file.value().size), path);
 }
 
 RegularFile::RegularFile(RegularFile&& other) noexcept
-    : _descriptor(std::exchange(other._descriptor, -1)), _size(other._size), _path(std::move(other._path))
+    : _handle(std::exchange(other._handle, system::File::none)), _size(other._size), _path(std::move(other._path))
 {
 }
 
 RegularFile::~RegularFile()
 {
-    if (_descriptor >= 0) ::close(_descriptor);
+    if (_handle != system::File::none) system::closeFile(_handle);
 }
 
 bool RegularFile::isSameAs(const std::string& path) const
 {
-    struct stat mine, other;
-    return ::fstat(_descriptor, &mine) == 0 && ::stat(path.c_str(), &other) == 0 && mine.st_dev == other.st_dev &&
-           mine.st_ino == other.st_ino;
+    return system::isSameFile(_handle, path);
 }
 
 Result<std::size_t> RegularFile::read(void* to, std::size_t bytes) const
@@ -167,13 +135,11 @@ Result<std::size_t> RegularFile::read(void* to, std::size_t bytes) const
     std::size_t done = 0;
     while (done < bytes)
     {
-        const ssize_t count =
-            ::pread(_descriptor, static_cast<char*>(to) + done, bytes - done, static_cast<off_t>(done));
-        if (count < 0 && errno == EINTR) continue;
-        if (count < 0) return about(_path, std::string("the file cannot be read: ") + std::strerror(errno));
-        if (count == 0)
+        const Result<std::size_t> count = system::readFile(_handle, done, static_cast<char*>(to) + done, bytes - done);
+        if (!count) return about(_path, count.error().message);
+        if (count.value() == 0)
             return about(_path, "expected " + std::to_string(bytes) + " bytes, found " + std::to_string(done));
-        done += static_cast<std::size_t>(count);
+        done += count.value();
     }
     return done;
 }

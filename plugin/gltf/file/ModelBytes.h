@@ -7,10 +7,12 @@
 #include <osgGpuAnimation/math/Result.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <iosfwd>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace osgGpuAnimation::gltf
 {
@@ -35,9 +37,12 @@ public:
     Result<std::string> readWhole() const;
 
 private:
-    RegularFile(int descriptor, std::size_t size, std::string path);
+    RegularFile(std::intptr_t handle, std::size_t size, std::string path)
+        : _handle(handle), _size(size), _path(std::move(path))
+    {
+    }
 
-    int _descriptor;
+    std::intptr_t _handle; ///< of system::File
     std::size_t _size;
     std::string _path;
 };

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/file/ProgressLine.h"
 
+#include <osgGpuAnimation/math/detail/System.h>
+
 #include <iostream>
 #include <utility>
-
-#include <unistd.h>
 
 namespace osgGpuAnimation::gltf
 {
@@ -19,7 +19,7 @@ const char* const clear = "\r\x1b[K"; // to the line's begin; erase to its end
 
 ProgressLine::ProgressLine(std::string work) : _work(std::move(work))
 {
-    if (isatty(STDERR_FILENO) != 0) _thread = std::thread(&ProgressLine::run, this);
+    if (system::isErrorTerminal()) _thread = std::thread(&ProgressLine::run, this);
 }
 
 ProgressLine::~ProgressLine()

@@ -70,6 +70,11 @@ Error unexpected(const std::string& expected, const std::string& found)
     return Error{"expected " + expected + ", found " + found};
 }
 
+Error missingLibrary(const std::string& subject, const std::string& library)
+{
+    return {subject + " needs " + library + ", without which this osgGpuAnimation was built"};
+}
+
 Error fault(std::string_view element, std::string_view expected, std::string_view found)
 {
     return Error{std::string(element) + ": " + unexpected(std::string(expected), std::string(found)).message};

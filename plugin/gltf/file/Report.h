@@ -95,6 +95,9 @@ Error fault(std::string_view element, std::string_view expected, std::string_vie
 /// `expected …, found …`, for callers that name the element.
 Error unexpected(const std::string& expected, const std::string& found);
 
+/// `subject needs library, without which this osgGpuAnimation was built`
+Error missingLibrary(const std::string& subject, const std::string& library);
+
 /// An element with its name in the file, for messages: `animations[2] "Run"`.
 template <typename Index>
 std::string namedElement(std::string_view collection, Index index, std::string_view name)

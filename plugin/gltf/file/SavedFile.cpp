@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/file/SavedFile.h"
 
+#include <osgGpuAnimation/math/detail/System.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -8,7 +10,6 @@
 #include <filesystem>
 #include <iterator>
 #include <system_error>
-#include <unistd.h>
 
 namespace osgGpuAnimation::gltf
 {
@@ -18,10 +19,9 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// mode: of std::fopen(). 0, or the system's error number.
-int writeBytes(const std::string& file, const char* mode, std::string_view bytes)
+/// Writes and closes. 0, or the system's error number, which is that of opening if there is no stream.
+int writeBytes(std::FILE* stream, std::string_view bytes)
 {
-    std::FILE* const stream = std::fopen(file.c_str(), mode);
     if (!stream) return errno;
     const bool isWritten = std::fwrite(bytes.data(), 1, bytes.size(), stream) == bytes.size();
     const int failure = isWritten ? 0 : errno;
@@ -46,13 +46,14 @@ int replaceFile(const std::string& target, const fs::file_status& status, std::s
     int code = EEXIST; // an interrupted program may have left a file
     for (int number = 0; code == EEXIST && number < 1000; ++number)
     {
-        part = target + '.' + std::to_string(getpid()) + '-' + std::to_string(number) + ".part";
-        code = writeBytes(part, "wbx", bytes);
+        part = target + '.' + std::to_string(system::processId()) + '-' + std::to_string(number) + ".part";
+        code = writeBytes(system::createFile(part), bytes);
     }
     if (code == EEXIST) return code;
     std::error_code failure;
     if (code == 0 && fs::exists(status)) fs::permissions(part, status.permissions(), failure);
-    if (code == 0 && std::rename(part.c_str(), target.c_str()) != 0) code = errno;
+    if (code == 0) fs::rename(part, target, failure);
+    if (code == 0) code = failure.default_error_condition().value();
     if (code != 0) fs::remove(part, failure);
     return code;
 }
@@ -73,7 +74,7 @@ Result<void> saveFile(const std::string& file, std::string_view bytes)
     const bool isSpecial = fs::exists(status) && !fs::is_regular_file(status);
     int code = fs::status_known(status) ? 0 : failure.value();
     if (code == 0 && !isSpecial) code = replaceFile(linkTarget(file), status, bytes);
-    if (isOfFolder(code) || (code == 0 && isSpecial)) code = writeBytes(file, "wb", bytes);
+    if (isOfFolder(code) || (code == 0 && isSpecial)) code = writeBytes(std::fopen(file.c_str(), "wb"), bytes);
     return code == 0 ? Result<void>() : Error{std::string("cannot be written: ") + std::strerror(code)};
 }
 

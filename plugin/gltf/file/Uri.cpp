@@ -144,10 +144,11 @@ fs::path folderOf(const fs::path& file)
     return file.has_parent_path() ? file.parent_path() : ".";
 }
 
+/// Also for a drive's own folder, C:file on Windows.
 bool leavesFolder(const fs::path& relative)
 {
     const fs::path normal = relative.lexically_normal();
-    return relative.is_absolute() || (normal.begin() != normal.end() && *normal.begin() == "..");
+    return relative.has_root_path() || (normal.begin() != normal.end() && *normal.begin() == "..");
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 #include "gltf/import/Meshes.h"
 
 #include "gltf/data/Accessor.h"
+#include "gltf/data/Meshoptimizer.h"
 #include "gltf/data/VertexAttributes.h"
 #include "gltf/file/Elements.h"
 #include "gltf/import/TriangleMesh.h"

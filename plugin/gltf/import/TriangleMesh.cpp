@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/import/TriangleMesh.h"
 
-#include <meshoptimizer.h>
 #include <osg/Vec3d>
 
 #include <algorithm>
@@ -47,18 +46,6 @@ std::vector<std::uint32_t> firstEqual(const std::vector<VertexStream>& streams, 
         first[sorted[i]] =
             i > 0 && compare(streams, sorted[i - 1], sorted[i]) == 0 ? first[sorted[i - 1]] : sorted[i];
     return first;
-}
-
-/// meshoptimizer searches all triangles of a vertex each time that it emits one of them, which takes hours for a file
-/// whose triangles all share one vertex.
-bool isQuick(const std::vector<std::uint32_t>& indices, std::size_t vertexCount)
-{
-    constexpr std::uint64_t maxStepsAnIndex = 100;
-    std::vector<std::uint32_t> triangles(vertexCount);
-    std::uint64_t steps = 0;
-    for (const std::uint32_t index : indices)
-        steps += ++triangles[index];
-    return steps <= maxStepsAnIndex * indices.size();
 }
 
 } // namespace
@@ -124,17 +111,6 @@ WeldedVertices weldVertices(const std::vector<VertexStream>& streams, std::size_
         welded.vertexOf[vertex] = first == vertex ? static_cast<std::uint32_t>(welded.count++) : welded.vertexOf[first];
     }
     return welded;
-}
-
-void optimizeForVertexCache(std::vector<std::uint32_t>& indices, std::size_t vertexCount)
-{
-    assert(indices.size() % 3 == 0 && "triangles are whole");
-    assert(std::all_of(indices.begin(), indices.end(), [&](std::uint32_t index) { return index < vertexCount; }) &&
-           "indices were checked with the document");
-    if (indices.empty() || !isQuick(indices, vertexCount)) return;
-    std::vector<std::uint32_t> ordered(indices.size());
-    meshopt_optimizeVertexCache(ordered.data(), indices.data(), indices.size(), vertexCount);
-    indices = std::move(ordered);
 }
 
 } // namespace osgGpuAnimation::gltf

@@ -41,10 +41,4 @@ struct WeldedVertices
 /// can make the time grow by the square of the vertices.
 WeldedVertices weldVertices(const std::vector<VertexStream>& streams, std::size_t vertexCount);
 
-/// Orders triangles for the GPU's vertex cache, so that drawing shades each vertex about once (a skinned vertex is
-/// expensive). Triangles keep their winding, vertices their numbers. Not for blended meshes, whose order is visible.
-/// indices: whole triangles, each index below vertexCount. They keep their order if vertices belong to hundreds of
-/// triangles on average: the search would then take quadratic time.
-void optimizeForVertexCache(std::vector<std::uint32_t>& indices, std::size_t vertexCount);
-
 } // namespace osgGpuAnimation::gltf

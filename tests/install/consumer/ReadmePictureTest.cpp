@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgDB/ReadFile>
 #include <osgDB/WriteFile>
-#include <osgGpuAnimation/gpu/EglGraphicsContext.h>
+#include <osgGpuAnimation/gpu/OffscreenContext.h>
 #include <osgViewer/Viewer>
 
 #include <iostream>
@@ -13,7 +13,7 @@ int main(int argumentCount, char** arguments)
 {
     osg::ref_ptr<osgDB::Options> options = new osgDB::Options("noKeys");
     osg::ref_ptr<osg::Node> scene = argumentCount == 3 ? osgDB::readRefNodeFile(arguments[1], options) : nullptr;
-    auto context = osgGpuAnimation::EglGraphicsContext::create(800, 600);
+    auto context = osgGpuAnimation::createOffscreenContext(800, 600);
     if (!context) std::cerr << context.error().message << std::endl;
     if (!scene || !context) return 1;
 

@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/math/Box.h>
+#include <osgGpuAnimation/math/detail/Builtins.h>
 
 #include <algorithm>
 #include <array>
@@ -43,7 +44,7 @@ public:
     /// Starts to load what at() reads. time: in [0, duration).
     void prefetch(float time) const
     {
-        if (!_parts.empty()) __builtin_prefetch(&partAt(time));
+        if (!_parts.empty()) osgGpuAnimation::prefetch(&partAt(time));
     }
     /// The pose with that travel; in a jump of the clip the nearer one of the poses before and after.
     BlendSample sampleAt(float travel) const;

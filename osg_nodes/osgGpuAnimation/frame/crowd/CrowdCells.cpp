@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/frame/crowd/CrowdCells.h>
 
+#include <osgGpuAnimation/math/detail/Builtins.h>
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -209,7 +211,7 @@ void SeenMembers::findIndices(std::size_t instanceCount, std::vector<std::uint32
     std::uint32_t* out = outIndices.data();
     for (std::size_t word = 0; word < seen.size(); ++word)
         for (std::uint64_t bits = seen[word]; bits != 0; bits &= bits - 1)
-            *out++ = static_cast<std::uint32_t>(64 * word + static_cast<std::size_t>(__builtin_ctzll(bits)));
+            *out++ = static_cast<std::uint32_t>(64 * word + countTrailingZeros(bits));
 }
 
 } // namespace osgGpuAnimation

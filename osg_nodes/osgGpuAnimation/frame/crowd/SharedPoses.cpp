@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/frame/crowd/CrowdBatches.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
+#include <osgGpuAnimation/math/detail/Builtins.h>
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 
 #include <layout.glsl>
@@ -90,7 +91,7 @@ public:
             const BlendSample* poses = nullptr;
             for (std::uint64_t bits = shown.bits; bits != 0; bits &= bits - 1, ++number)
             {
-                const std::size_t place = 64 * word + static_cast<std::size_t>(__builtin_ctzll(bits));
+                const std::size_t place = 64 * word + countTrailingZeros(bits);
                 if (!poses) poses = _meshes.clips[_storage.clips[place / stepsOfClip]].poses.data();
                 if (number % maxPoses == 0) batches.push_back(function());
                 batches.back()->addSample(poses[place % stepsOfClip]);

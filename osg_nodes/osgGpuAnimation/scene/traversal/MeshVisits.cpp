@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/scene/traversal/MeshVisits.h>
 
+#include <osgGpuAnimation/math/detail/System.h>
+
 #include <osg/Geode>
 #include <osg/Notify>
 #include <osg/UserDataContainer>
@@ -10,9 +12,8 @@
 #include <osgUtil/PolytopeIntersector>
 #include <osgUtil/RayIntersector>
 
-#include <dlfcn.h>
-
 #include <algorithm>
+#include <string>
 #include <string_view>
 #include <typeinfo>
 
@@ -50,10 +51,10 @@ void renameAllHits(osgUtil::Intersector& intersector, const osg::Drawable& posed
 /// True if the class lies in a library osgdb_* that writes files.
 bool isOfFileWriter(const std::type_info& type)
 {
-    Dl_info found;
-    if (!dladdr(&type, &found) || !found.dli_fname) return false;
-    const std::string_view path = found.dli_fname;
-    const std::string_view library = path.substr(path.find_last_of('/') + 1);
+    const std::string path = system::moduleOf(&type);
+    std::string_view library = path;
+    library.remove_prefix(path.find_last_of("/\\") + 1);
+    if (library.substr(0, 6) == "mingw_") library.remove_prefix(6);
     if (library.substr(0, 6) != "osgdb_") return false;
     constexpr std::string_view others[] = {"serializers_", "gltf", "crowd", "osggpuanimation", "dot", "normals"};
     return std::none_of(std::begin(others), std::end(others),
@@ -81,7 +82,7 @@ osg::Geode& keepForWriter(osg::NodeVisitor& visitor, const osg::Drawable& mesh, 
 bool isFileWriter(const osg::NodeVisitor& visitor)
 {
     if (visitor.getVisitorType() != osg::NodeVisitor::NODE_VISITOR) return false;
-    // dladdr() takes microseconds, and a traversal asks for every mesh.
+    // The search takes microseconds, and a traversal asks for every mesh.
     thread_local const std::type_info* lastType = nullptr;
     thread_local bool isWriter = false;
     if (&typeid(visitor) != lastType) isWriter = isOfFileWriter(typeid(visitor));

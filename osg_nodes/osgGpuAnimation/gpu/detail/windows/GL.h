@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+// Windows' own gl.h has GL 1.1. On Windows, CMake includes this header before each of our sources that use OSG; OSG's
+// headers then find the names that Mesa's gl.h has.
+#include <osg/GL>
+
+#include <GL/glext.h>

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/math/detail/System.h>
+
+#include <algorithm>
+#include <array>
+#include <fcntl.h>
+#include <filesystem>
+#include <io.h>
+#include <sys/stat.h>
+#include <system_error>
+
+#include <windows.h>
+
+namespace osgGpuAnimation::system
+{
+
+namespace
+{
+
+HANDLE asHandle(std::intptr_t handle)
+{
+    return reinterpret_cast<HANDLE>(handle);
+}
+
+std::string lastError()
+{
+    return std::system_category().message(static_cast<int>(GetLastError()));
+}
+
+/// By handle, so that it is of the file and not of a name. True also for a folder, if `flags` open folders.
+bool identify(HANDLE file, BY_HANDLE_FILE_INFORMATION& outInformation)
+{
+    return file != INVALID_HANDLE_VALUE && GetFileInformationByHandle(file, &outInformation) != 0;
+}
+
+HANDLE open(const std::string& path, DWORD access)
+{
+    // Without the flag for backups, a folder cannot be opened; of a pipe, no server learns who this process is.
+    const DWORD flags = FILE_FLAG_BACKUP_SEMANTICS | SECURITY_SQOS_PRESENT | SECURITY_ANONYMOUS;
+    return CreateFileW(std::filesystem::path(path).c_str(), access,
+                       FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE, nullptr, OPEN_EXISTING, flags, nullptr);
+}
+
+} // namespace
+
+Result<File> openRegularFile(const std::string& path)
+{
+    const HANDLE file = open(path, GENERIC_READ);
+    if (file == INVALID_HANDLE_VALUE)
+    {
+        const DWORD code = GetLastError();
+        const bool isMissing =
+            code == ERROR_FILE_NOT_FOUND || code == ERROR_PATH_NOT_FOUND || code == ERROR_INVALID_NAME;
+        return Error{isMissing ? "the file does not exist" : "the file cannot be opened: " + lastError()};
+    }
+    BY_HANDLE_FILE_INFORMATION found{};
+    const DWORD type = GetFileType(file);
+    const bool isKnown = type == FILE_TYPE_DISK && identify(file, found);
+    const bool isFolder = isKnown && (found.dwFileAttributes & FILE_ATTRIBUTE_DIRECTORY) != 0;
+    if (isKnown && !isFolder)
+        return File{reinterpret_cast<std::intptr_t>(file),
+                    std::uint64_t(found.nFileSizeHigh) << 32 | found.nFileSizeLow};
+    CloseHandle(file);
+    return Error{std::string("expected a regular file, found ") + (isFolder                 ? "a folder"
+                                                                   : type == FILE_TYPE_PIPE ? "a pipe"
+                                                                                            : "a device or socket")};
+}
+
+void closeFile(std::intptr_t handle)
+{
+    CloseHandle(asHandle(handle));
+}
+
+bool isSameFile(std::intptr_t handle, const std::string& path)
+{
+    BY_HANDLE_FILE_INFORMATION mine{}, other{};
+    const HANDLE file = open(path, 0);
+    const bool isSame = identify(asHandle(handle), mine) && identify(file, other) &&
+                        mine.dwVolumeSerialNumber == other.dwVolumeSerialNumber &&
+                        mine.nFileIndexHigh == other.nFileIndexHigh && mine.nFileIndexLow == other.nFileIndexLow;
+    if (file != INVALID_HANDLE_VALUE) CloseHandle(file);
+    return isSame;
+}
+
+Result<std::size_t> readFile(std::intptr_t handle, std::uint64_t from, void* to, std::size_t bytes)
+{
+    OVERLAPPED place{};
+    place.Offset = static_cast<DWORD>(from);
+    place.OffsetHigh = static_cast<DWORD>(from >> 32);
+    DWORD count = 0;
+    const auto wanted = static_cast<DWORD>(std::min<std::size_t>(bytes, std::size_t(1) << 30));
+    if (ReadFile(asHandle(handle), to, wanted, &count, &place) || GetLastError() == ERROR_HANDLE_EOF)
+        return std::size_t(count);
+    return Error{"the file cannot be read: " + lastError()};
+}
+
+std::FILE* createFile(const std::string& path)
+{
+    const int flags = _O_CREAT | _O_EXCL | _O_WRONLY | _O_BINARY | _O_NOINHERIT;
+    const int descriptor = _wopen(std::filesystem::path(path).c_str(), flags, _S_IREAD | _S_IWRITE);
+    return descriptor < 0 ? nullptr : _fdopen(descriptor, "wb");
+}
+
+std::string moduleOf(const void* address)
+{
+    HMODULE module = nullptr;
+    const DWORD flags = GET_MODULE_HANDLE_EX_FLAG_FROM_ADDRESS | GET_MODULE_HANDLE_EX_FLAG_UNCHANGED_REFCOUNT;
+    if (!GetModuleHandleExW(flags, static_cast<LPCWSTR>(address), &module)) return {};
+    std::array<wchar_t, 4096> path{};
+    const DWORD length = GetModuleFileNameW(module, path.data(), static_cast<DWORD>(path.size()));
+    return length < path.size() ? std::filesystem::path(path.data()).string() : std::string();
+}
+
+unsigned long processId()
+{
+    return GetCurrentProcessId();
+}
+
+bool isErrorTerminal()
+{
+    DWORD mode = 0;
+    const HANDLE error = GetStdHandle(STD_ERROR_HANDLE);
+    return GetConsoleMode(error, &mode) && (mode & ENABLE_VIRTUAL_TERMINAL_PROCESSING) != 0;
+}
+
+} // namespace osgGpuAnimation::system

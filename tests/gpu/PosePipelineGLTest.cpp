@@ -71,7 +71,7 @@ const PipelineData pipelineData[] = {
     {"one character", {1, 30, 8, 5, false, false, false}, 1, Roots::None, 0},
     {"many, each at its own time", {2, 30, 8, 5, false, true, true}, 100, Roots::None, 0},
     {"with root matrices", {3, 30, 8, 5, false, true, true}, 37, Roots::Own, 0},
-    {"splines", {4, 30, 8, 5, true, true, true}, 20, Roots::Own, 0},
+    {"splines", {4, 30, 8, 4, true, true, true}, 20, Roots::Own, 0},
     {"one joint", {5, 1, 1, 3, false, false, false}, 3, Roots::None, 0},
     {"a chain of 64", {6, 64, 64, 3, false, false, false}, 10, Roots::None, 0},
     {"in chunks, as with 65,536 texels", {7, 20, 6, 2, false, false, true}, 2500, Roots::Own, 65536},

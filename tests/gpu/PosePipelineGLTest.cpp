@@ -73,7 +73,7 @@ const PipelineData pipelineData[] = {
     {"with root matrices", {3, 30, 8, 5, false, true, true}, 37, Roots::Own, 0},
     {"splines", {4, 30, 8, 4, true, true, true}, 20, Roots::Own, 0},
     {"one joint", {5, 1, 1, 3, false, false, false}, 3, Roots::None, 0},
-    {"a chain of 64", {6, 64, 64, 3, false, false, false}, 10, Roots::None, 0},
+    {"a chain of 64", {6, 64, 64, 2, false, false, false}, 10, Roots::None, 0},
     {"in chunks, as with 65,536 texels", {7, 20, 6, 2, false, false, true}, 2500, Roots::Own, 65536},
     {"with one root matrix for all", {8, 30, 8, 5, false, true, true}, 37, Roots::One, 0},
     {"one character with a root matrix", {9, 30, 8, 5, false, false, true}, 1, Roots::One, 0},
@@ -543,6 +543,11 @@ TEST_F(GlObjectsOfPosesGLTest, aTimerMeasuresItsFrames)
         }
         glFinish();
         const std::vector<FeedbackTimer::Measured> measured = timer.takeFinished();
+        if (!state().get<osg::GLExtensions>()->isARBTimerQuerySupported)
+        {
+            EXPECT_TRUE(measured.empty());
+            continue;
+        }
         ASSERT_EQ(measured.size(), 16u);
         double sum = 0.0;
         for (std::size_t i = 0; i < measured.size(); sum += measured[i++].seconds)

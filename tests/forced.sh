@@ -29,5 +29,11 @@ run()
     rm -f "$log"
 }
 
-run texels '*GLTest*' OSGGPUANIMATION_MAX_TEXELS=65536
+# glslangValidator reads the same programs in each way.
+gl='*GLTest*-ShaderLanguageGLTest.*'
+run texels "$gl" OSGGPUANIMATION_MAX_TEXELS=65536
+# Mesa makes a context of the one profile where the other one is asked for.
+lacks=MESA_EXTENSION_OVERRIDE='-GL_ARB_base_instance -GL_ARB_timer_query -GL_ARB_buffer_storage'
+run gl33 "$gl:*Core*:Profile*" MESA_GL_VERSION_OVERRIDE=3.3COMPAT "$lacks"
+run gl33core '*Core*GLTest*:*Profile*GLTest*' MESA_GL_VERSION_OVERRIDE=3.3 "$lacks"
 [ $faults -eq 0 ]

@@ -13,6 +13,8 @@ struct Run
 {
     osg::GraphicsContext& context; ///< current when a measurement begins
     Report& report;
+    std::string folder;             ///< of the output
+    bool isQuick = false;           ///< beQuick() was called
     int rounds = 7;                 ///< of fast measurements
     int loadRounds = 21;            ///< of loading a file
     std::size_t frameCount = 1000;  ///< characters, for the bars of whole frames
@@ -26,6 +28,7 @@ struct Run
 
     void beQuick()
     {
+        isQuick = true;
         rounds = 5;
         loadRounds = 11;
         frameCount = 100;
@@ -80,6 +83,9 @@ void measureMixed(const std::vector<Subject>& subjects, Run& run);
 void measurePictures(const Subject& subject, Run& run);
 /// The memory of a field of 99,856 beyond that of a small one, on the CPU and the GPU.
 void measureMemory(const Subject& subject, Run& run);
+/// Each choice that only a GPU can judge, on the device of the run: poses of many sets, layouts, uploads and whole
+/// frames. It writes gpu.md and gpu.json into the folder and prints the page.
+void measureGpu(const std::vector<Subject>& subjects, Run& run);
 /// Loading the subject's file, compared with tinygltf's parsing and image decoding.
 void measureLoad(const Subject& subject, Run& run);
 

@@ -72,6 +72,8 @@ void measureShading(const Subject& subject, Run& run);
 /// A crowd of 24 outfits that hide a third of the parts each, compared with one all alike and with 24 crowds. Nothing
 /// for subjects of less than four parts.
 void measureOutfits(const Subject& subject, Run& run);
+/// 960 separate characters compared with a crowd of as many, alike and, with enough parts, with 24 sets of hidden ones.
+void measureSeparate(const Subject& subject, Run& run);
 /// A field of 99,856 instances of a crowd with a pixel error, of which the camera sees half: whole frames, poses and
 /// bytes.
 void measureField(const Subject& subject, Run& run);

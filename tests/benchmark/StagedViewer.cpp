@@ -180,6 +180,8 @@ std::vector<Costs> race(const Viewers& viewers, int rounds)
         {
             const FrameCost cost = viewers[i]->frame();
             costs[i].whole.push_back(cost.whole());
+            costs[i].update.push_back(cost.update);
+            costs[i].cull.push_back(cost.cull);
             costs[i].updateAndCull.push_back(cost.updateAndCull());
             costs[i].draw.push_back(cost.draw);
         }

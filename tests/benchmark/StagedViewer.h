@@ -97,7 +97,7 @@ Viewers viewersOf(const std::vector<osg::ref_ptr<osg::Node>>& scenes, const osg:
 /// The costs of the frames of one viewer.
 struct Costs
 {
-    Series whole, updateAndCull, draw;
+    Series whole, update, cull, updateAndCull, draw;
 };
 
 /// Draws frames until all programs and buffers exist and osgAnimation is set up; then measures the viewers in turns.

@@ -24,8 +24,8 @@ constexpr const char* usage = R"(osggpuanim_benchmark [options] OUTPUT_FOLDER FI
     measures this kit against osgAnimation with the characters of glTF files, prints a table and writes benchmark.json
     into the folder
     --quick           fewer characters and rounds
-    --only PART       pose, samples, constraints, chunks, compact, depth, frames, crowd, outfits, field, mixed, pictures, draws,
-                      shading, start, memory, load or gpu (gpu.md and gpu.json: the choices that a GPU decides); several
+    --only PART       pose, samples, constraints, chunks, compact, depth, frames, crowd, outfits, separate, field, mixed, pictures,
+                      draws, shading, start, memory, load or gpu (gpu.md and gpu.json: the choices that a GPU decides); several
                       times, too
     --return-memory   leave it to glibc whether freed memory goes back to the kernel
 )";
@@ -101,10 +101,10 @@ constexpr std::pair<const char*, void (*)(const Subject&, Run&)> parts[] = {
     {"chunks", measureChunks},     {"compact", measureCompact},
     {"pose", measurePose},         {"frames", measureFrames},
     {"crowd", measureCrowd},       {"outfits", measureOutfits},
-    {"field", measureField},       {"draws", measureDraws},
-    {"pictures", measurePictures}, {"shading", measureShading},
-    {"start", measureStart},       {"memory", measureMemory},
-    {"load", measureLoad}};
+    {"separate", measureSeparate}, {"field", measureField},
+    {"draws", measureDraws},       {"pictures", measurePictures},
+    {"shading", measureShading},   {"start", measureStart},
+    {"memory", measureMemory},     {"load", measureLoad}};
 
 void measureAll(const Request& request, Run& run)
 {

@@ -503,20 +503,26 @@ TEST_F(GlObjectsOfPosesGLTest, listsOfInstancesKeepTheirContent)
     osg::GLExtensions& gl = *state().get<osg::GLExtensions>();
     InstanceTransformBuffers& lists = InstanceTransformBuffers::of(state());
     const int before = objects();
+    std::vector<InstanceLists::value_type> listOf; // list i: i instances of pose i
+    for (std::size_t i = 0; i < 4; ++i)
+        listOf.push_back(std::make_shared<const std::vector<InstanceTransform>>(
+            i, InstanceTransform{AffineMatrix(), static_cast<float>(i)}));
     for (int round = 0; round < 2; ++round)
     {
-        for (const std::uint64_t serial : {1, 2, 1, 3, 1, 2, 3, 1})
+        for (const std::vector<std::size_t>& numbers :
+             std::vector<std::vector<std::size_t>>{{1}, {1, 2}, {1}, {3, 1}, {1}, {1, 2}, {3, 1}, {1}})
         {
-            std::vector<InstanceTransform> transforms(serial);
-            for (InstanceTransform& transform : transforms)
-                transform.pose = static_cast<float>(serial);
-            const BufferTexture& buffer = lists.buffer(serial, transforms);
-            InstanceTransform found;
+            InstanceLists joined;
+            for (const std::size_t number : numbers)
+                joined.push_back(listOf[number]);
+            const BufferTexture& buffer = *lists.joined(joined).buffer;
+            std::vector<InstanceTransform> found(numbers.front() + (numbers.size() > 1 ? numbers.back() : 0));
             gl.glBindBuffer(GL_ARRAY_BUFFER, buffer.buffer());
-            gl.glGetBufferSubData(GL_ARRAY_BUFFER, static_cast<GLintptr>((serial - 1) * sizeof found), sizeof found,
-                                  &found);
+            gl.glGetBufferSubData(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(found.size() * sizeof found[0]),
+                                  found.data());
             gl.glBindBuffer(GL_ARRAY_BUFFER, 0);
-            EXPECT_EQ(found.pose, static_cast<float>(serial)) << "round " << round;
+            EXPECT_EQ(found.front().pose, static_cast<float>(numbers.front())) << "round " << round;
+            EXPECT_EQ(found.back().pose, static_cast<float>(numbers.back())) << "round " << round;
         }
         lists.deleteAllGLObjects();
         EXPECT_EQ(objects(), before);

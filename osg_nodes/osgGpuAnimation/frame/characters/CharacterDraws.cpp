@@ -131,21 +131,17 @@ void CharacterDraws::draw(osgUtil::CullVisitor& visitor, LodView& view, const Dr
     const int level = levelOf(visitor, view, character, look, osg::Matrixd());
     Group* group = nullptr;
     if (character.isDrawnTogether && !look.shared.empty() && canDrawTogether(visitor))
-    {
-        const Group sought = newGroup(visitor, character.controller.set(), pose.slot, level);
-        group = findGroup(sought);
-        // The first is drawn normally.
-        if (!group) _groups.push_back(std::make_unique<Group>(sought));
-    }
+        group = &groupOf(visitor, character.controller.set(), pose.slot, level);
+    std::vector<osg::Node*> alone; // not a member: other characters may be below these nodes
+    for (unsigned int i = 0; i < character.node.getNumChildren(); ++i)
+        if (!group || !group->knows(character.node.getChild(i))) alone.push_back(character.node.getChild(i));
     const bool isVisible = !character.node.isCullingActive() || !visitor.isCulled(look.box);
     if (group && isVisible) add(visitor, *group, look, frame, *visitor.getModelViewMatrix(), pose.instance);
+    for (const SkinnedGeometry* mesh : look.shared)
+        if (group) group->bindings.emplace(mesh, nullptr);
     osg::StateSet* state = nullptr;
-    // Not the look's own list: other characters may be below these nodes.
-    const std::vector<osg::Node*> others = group ? look.others : std::vector<osg::Node*>();
-    const auto count = group ? static_cast<unsigned int>(others.size()) : character.node.getNumChildren();
-    for (unsigned int i = 0; i < count; ++i)
+    for (osg::Node* child : alone)
     {
-        osg::Node* child = group ? others[i] : character.node.getChild(i);
         if (!state)
             visitor.pushStateSet(state = frame.stateOf(character.node, character.controller.set(), pose, level));
         child->accept(visitor);
@@ -160,9 +156,10 @@ bool CharacterDraws::drawFromAbove(osgUtil::CullVisitor& visitor, LodView& view,
     if (look.shared.empty() || !look.others.empty() || !canDrawTogether(visitor)) return false;
     const int level = levelOf(visitor, view, character, look, toParent);
     const SubmittedPose pose = frame.submit(character.node, character.controller, character.rootMatrix);
-    Group* group = findGroup(newGroup(visitor, character.controller.set(), pose.slot, level));
-    if (!group) return false;
-    add(visitor, *group, look, frame, toParent * *visitor.getModelViewMatrix(), pose.instance);
+    Group& group = groupOf(visitor, character.controller.set(), pose.slot, level);
+    const auto isKnown = [&](const SkinnedGeometry* mesh) { return group.knows(mesh); };
+    if (!group.isOpen(look) && !std::all_of(look.shared.begin(), look.shared.end(), isKnown)) return false;
+    add(visitor, group, look, frame, toParent * *visitor.getModelViewMatrix(), pose.instance);
     return true;
 }
 
@@ -189,24 +186,20 @@ bool CharacterDraws::Group::isSame(const Group& other) const
            slot == other.slot && level == other.level;
 }
 
-CharacterDraws::Group CharacterDraws::newGroup(osgUtil::CullVisitor& visitor, const AnimationSet& set, std::size_t slot,
+CharacterDraws::Group& CharacterDraws::groupOf(osgUtil::CullVisitor& visitor, const AnimationSet& set, std::size_t slot,
                                                int level)
 {
-    return {visitor.getCurrentStateGraph(),
-            visitor.getCurrentRenderBin(),
-            visitor.getProjectionMatrix(),
-            &set,
-            slot,
-            level};
-}
-
-/// Null: there is none.
-CharacterDraws::Group* CharacterDraws::findGroup(const Group& sought)
-{
-    if (_lastGroup && _lastGroup->isSame(sought)) return _lastGroup;
-    const auto known = std::find_if(_groups.begin(), _groups.end(),
-                                    [&](const std::unique_ptr<Group>& group) { return group->isSame(sought); });
-    return known == _groups.end() ? nullptr : _lastGroup = known->get();
+    const Group sought{visitor.getCurrentStateGraph(),
+                       visitor.getCurrentRenderBin(),
+                       visitor.getProjectionMatrix(),
+                       &set,
+                       slot,
+                       level};
+    if (_lastGroup && _lastGroup->isSame(sought)) return *_lastGroup;
+    auto known = std::find_if(_groups.begin(), _groups.end(),
+                              [&](const std::unique_ptr<Group>& group) { return group->isSame(sought); });
+    if (known == _groups.end()) known = _groups.insert(known, std::make_unique<Group>(sought));
+    return *(_lastGroup = known->get());
 }
 
 /// Adds an instance, unless it is behind the near plane or nowhere: the tests of CullVisitor::apply(Drawable&).
@@ -217,21 +210,28 @@ void CharacterDraws::add(osgUtil::CullVisitor& visitor, Group& group, const Look
     if (!placement.isFinite()) return;
     const bool hasNearFar = visitor.getComputeNearFarMode() != osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR;
     if (hasNearFar && !visitor.updateCalculatedNearFar(toEye, look.box)) return;
-    if (group.instances.size() <= look.number) group.instances.resize(look.number + 1);
-    if (!group.instances[look.number])
-        open(visitor, group, look, frame, static_cast<float>(-(osg::Vec3d(look.box.center()) * toEye).z()));
-    group.instances[look.number]->push_back({placement, static_cast<float>(instance)});
+    std::shared_ptr<std::vector<InstanceTransform>> instances;
+    if (group.isOpen(look))
+        instances = group.instances[look.number];
+    else
+        instances = open(visitor, group, look, frame, static_cast<float>(-(osg::Vec3d(look.box.center()) * toEye).z()));
+    instances->push_back({placement, static_cast<float>(instance)});
 }
 
-/// Adds the instances of a look to the draws of its meshes.
-void CharacterDraws::open(osgUtil::CullVisitor& visitor, Group& group, const Look& look, PoseFrame& frame, float depth)
+/// Adds a list of instances to the draws of the look's meshes that the group knows. It serves later ones, too, if those
+/// are all.
+std::shared_ptr<std::vector<InstanceTransform>> CharacterDraws::open(osgUtil::CullVisitor& visitor, Group& group,
+                                                                     const Look& look, PoseFrame& frame, float depth)
 {
     const auto instances = std::make_shared<std::vector<InstanceTransform>>();
-    group.instances[look.number] = instances;
     const osg::ref_ptr<osg::RefMatrix> eye = new osg::RefMatrix;
+    bool isComplete = true;
     for (SkinnedGeometry* mesh : look.shared)
     {
-        PaletteBinding*& binding = group.bindings[mesh];
+        const auto known = group.bindings.find(mesh);
+        isComplete = isComplete && known != group.bindings.end();
+        if (known == group.bindings.end()) continue;
+        PaletteBinding*& binding = known->second;
         if (!binding)
         {
             const DrawState placed = frame.instancedState(*group.set, group.slot, group.level);
@@ -243,6 +243,9 @@ void CharacterDraws::open(osgUtil::CullVisitor& visitor, Group& group, const Loo
         }
         binding->add(instances);
     }
+    if (!isComplete) return instances;
+    if (group.instances.size() <= look.number) group.instances.resize(look.number + 1);
+    return group.instances[look.number] = instances;
 }
 
 } // namespace osgGpuAnimation

@@ -68,8 +68,8 @@ struct DrawnCharacter
 bool canBeDrawnTogether(const SkinnedGeometry& mesh);
 
 /// The draws of one cull visitor's characters in a frame. Characters of one set and state, in a bin sorted by state,
-/// form a group: the first is drawn normally, all others by one instanced draw per mesh primitive, whichever of the
-/// meshes each shows.
+/// form a group: the first with a mesh draws it normally, all others by one instanced draw per mesh primitive,
+/// whichever of the meshes each shows.
 ///
 /// Always drawn normally: meshes with callbacks, with vertex arrays at the locations of placements
 /// (InstanceRuns::isRefusedBy), in bins sorted by depth or traversal, or below other nodes; all meshes if near and far
@@ -83,8 +83,8 @@ public:
     /// Draws the character's children. pose: its place in the frame. view: the visitor's.
     void draw(osgUtil::CullVisitor& visitor, LodView& view, const DrawnCharacter& character, PoseFrame& frame,
               SubmittedPose pose);
-    /// The same from the space above a character that is in view, for one of a group with nothing but shared meshes.
-    /// toParent: its matrix. False, without an effect: call draw().
+    /// The same from the space above a character that is in view, if others have drawn all its meshes. toParent: its
+    /// matrix. False, without an effect: call draw().
     bool drawFromAbove(osgUtil::CullVisitor& visitor, LodView& view, const DrawnCharacter& character,
                        const osg::Matrixd& toParent, PoseFrame& frame);
 
@@ -114,9 +114,14 @@ private:
         int level; ///< of detail
         /// By the number of their look; null: none yet.
         std::vector<std::shared_ptr<std::vector<InstanceTransform>>> instances{};
-        std::unordered_map<const SkinnedGeometry*, PaletteBinding*> bindings{}; ///< of the meshes' draws
+        std::unordered_map<const osg::Node*, PaletteBinding*> bindings{}; ///< of the meshes' draws; null: drawn once
 
         bool isSame(const Group& other) const;
+        bool isOpen(const Look& look) const
+        {
+            return look.number < instances.size() && instances[look.number] != nullptr;
+        }
+        bool knows(const osg::Node* mesh) const { return bindings.count(mesh) != 0; }
     };
     /// The scale of the last selected level, for siblings.
     struct LastScale
@@ -131,11 +136,11 @@ private:
     Look newLook(const osgUtil::CullVisitor& visitor, const DrawnCharacter& character) const;
     int levelOf(osgUtil::CullVisitor& visitor, LodView& view, const DrawnCharacter& character, Look& look,
                 const osg::Matrixd& toVisitor);
-    static Group newGroup(osgUtil::CullVisitor& visitor, const AnimationSet& set, std::size_t slot, int level);
-    Group* findGroup(const Group& sought);
+    Group& groupOf(osgUtil::CullVisitor& visitor, const AnimationSet& set, std::size_t slot, int level);
     void add(osgUtil::CullVisitor& visitor, Group& group, const Look& look, PoseFrame& frame, const osg::Matrixd& toEye,
              std::size_t instance);
-    void open(osgUtil::CullVisitor& visitor, Group& group, const Look& look, PoseFrame& frame, float depth);
+    std::shared_ptr<std::vector<InstanceTransform>> open(osgUtil::CullVisitor& visitor, Group& group, const Look& look,
+                                                         PoseFrame& frame, float depth);
 
     std::vector<std::unique_ptr<Look>> _looks; ///< of the traversal
     std::unordered_multimap<std::size_t, Look*> _looksByHash;

@@ -138,8 +138,10 @@ const Change changes[] = {
          for (unsigned int mesh = 0; mesh < 2; ++mesh)
              characterOf(group, 0).getChild(mesh)->setName(mesh == 0 ? "one" : "two"); // clones share it
          for (int index = 0; index < everybody; ++index)
-             if (index % 3 < 2)
-                 EXPECT_TRUE(characterOf(group, index).getMeshes().setVisible(index % 3 == 0 ? "one" : "two", false));
+         {
+             CharacterMeshes& meshes = characterOf(group, index).getMeshes();
+             if (index % 3 < 2) EXPECT_TRUE(meshes.setVisible(index % 3 == 0 ? "one" : "two", false));
+         }
      },
      2 + 2},
     {"some with callbacks of their own",

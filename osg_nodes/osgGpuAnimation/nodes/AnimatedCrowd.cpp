@@ -187,9 +187,7 @@ void AnimatedCrowd::showOutfits()
 Result<void> AnimatedCrowd::setOutfit(Instance instance, const Outfit* outfit)
 {
     const std::size_t index = _instances->indexOf(instance);
-    if (index == CrowdInstances::none) return CrowdInstances::noInstance();
-    if (_instances->hasProportions()) dirtyBound();
-    return _outfits.wear(index, outfit);
+    return index == CrowdInstances::none ? CrowdInstances::noInstance() : _outfits.wear(index, outfit);
 }
 
 const Outfit* AnimatedCrowd::getOutfit(Instance instance) const
@@ -367,8 +365,7 @@ void AnimatedCrowd::traverse(osg::NodeVisitor& visitor)
     const auto nodesOfOutfits = [&] { return outfits ? outfits->nodesOfOutfits() : NodesOfOutfits(); };
     if (osgUtil::CullVisitor* cullVisitor = visitor.asCullVisitor())
         cullCrowd({*this, *this, *_instances, _meshes.drawn(), _meshes.getPixelError(), _meshes._levels,
-                   _sharedPoses && _sharedPoses->areUsed() ? _sharedPoses.get() : nullptr,
-                   outfits ? &outfits->lists() : nullptr},
+                   _sharedPoses.get(), outfits ? &outfits->lists() : nullptr},
                   *cullVisitor);
     else if (dynamic_cast<osgUtil::IntersectionVisitor*>(&visitor) || isFileWriter(visitor))
         visitInstances(*this, *_instances, nodesOfOutfits(), visitor);
@@ -387,8 +384,7 @@ void AnimatedCrowd::prepareSharedPoses()
     const bool isOn = _meshes.getPixelError() > 0.0f && getAnimationSet().paletteSize() > 0;
     if (isOn && (!_sharedPoses || !_sharedPoses->isOf(_meshes.drawn()))) // kept for the next pixel error
         _sharedPoses = std::make_unique<SharedPoses>(_meshes.drawn(), getSharedAnimationSet());
-    if (isOn && !_meshes._task) _sharedPoses->wait(); // they take less time than levels
-    if (_sharedPoses) _sharedPoses->update();
+    if (_sharedPoses) _sharedPoses->update(isOn && !_meshes._task); // levels take more time than they
 }
 
 void AnimatedCrowd::releaseGLObjects(osg::State* state) const

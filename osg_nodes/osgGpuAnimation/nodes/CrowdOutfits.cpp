@@ -82,6 +82,7 @@ Result<void> CrowdOutfits::wear(std::size_t instance, const Outfit* outfit)
     const std::uint16_t number = numberOf(outfit);
     if (outfit && number == 0) return noOutfit();
     _instances.setOutfit(instance, number);
+    if (_instances.hasProportions()) _crowd.dirtyBound();
     return {};
 }
 

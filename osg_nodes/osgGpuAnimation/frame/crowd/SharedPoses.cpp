@@ -360,8 +360,9 @@ bool SharedPoses::isOf(const osg::Group& crowd) const
     return shapesBelow(crowd) == _meshes->shapes;
 }
 
-void SharedPoses::update()
+void SharedPoses::update(bool waits)
 {
+    if (waits) _meshes->thread.wait();
     _areUsed = _meshes->isMade;
     _before = std::move(_latest);
     _latest.clear();
@@ -429,7 +430,7 @@ std::vector<DrawState> submitSeen(PoseFrame& frame, const CrowdInstances& instan
 {
     static thread_local std::vector<std::uint32_t> others; // keeps its storage from cull to cull
     std::vector<DrawState> draws;
-    if (shared && scale.isOn())
+    if (shared && shared->areUsed() && scale.isOn())
         draws = shared->submit(frame, instances, scale, lists, seen, others);
     else
         seen.findIndices(instances.size(), others);

@@ -37,12 +37,11 @@ public:
     SharedPoses(const SharedPoses& other) : _meshes(other._meshes) {}
     SharedPoses& operator=(const SharedPoses&) = delete;
 
-    void wait() const { _meshes->thread.wait(); } ///< until they are computed
     /// True if the crowd still has the same meshes.
     bool isOf(const osg::Group& crowd) const;
-    /// Called in each update: forgets the lists that were not drawn since the last call.
-    void update();
-    /// True: they were computed before the last update(), and submit() may be called; the same in a frame's cameras.
+    /// Called in each update: forgets the lists that were not drawn since the last call. waits: until the thread ends.
+    void update(bool waits);
+    /// True: the thread had ended at the last update(), and submit() may be called; the same in a frame's cameras.
     bool areUsed() const { return _areUsed; }
 
     /// Submits the visible instances that share poses to the frame and returns a state for each draw of the crowd's

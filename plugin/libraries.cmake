@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# tinygltf, and what the kit can do without: OSGGPUANIMATION_WITH_NAME is on where the library is found, and can be switched off. CMake's
-# summary says what its absence costs. OSGGPUANIMATION_NAME is the target to link.
+# tinygltf, and what the kit can do without: OSGGPUANIMATION_WITH_NAME is on where the library is found, and can be
+# switched off. CMake's summary says what its absence costs. OSGGPUANIMATION_NAME is the target to link.
 include(FeatureSummary)
 
 find_package(nlohmann_json REQUIRED) # a static tinygltf names it

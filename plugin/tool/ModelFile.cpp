@@ -78,7 +78,8 @@ Result<gltf::ImportedModel> importFile(const std::string& fileName, const gltf::
     messages.warnings.insert(messages.warnings.end(), own.warnings.begin(), own.warnings.end());
     messages.notes.insert(messages.notes.end(), own.notes.begin(), own.notes.end());
     if (!imported && !isCalledGltf(fileName))
-        return Error{std::string("the file is neither .gltf nor .glb") + otherFormats + ": " + imported.error().message};
+        return Error{std::string("the file is neither .gltf nor .glb") + otherFormats + ": " +
+                     imported.error().message};
     if (!imported) return imported;
     if (!own.unmet.empty()) return Error{own.unmet.front()};
     gltf::ImportedModel model = std::move(imported).value();

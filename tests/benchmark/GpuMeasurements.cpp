@@ -233,7 +233,12 @@ void measureGpu(const std::vector<Subject>& subjects, Run& run)
     page.environment = describeDevice(state, page.copySpeed);
     measureSets(state, run.isQuick, page);
     measureFallback(state, page);
-    measureLayouts(state, page.copySpeed > fast ? 20000 : run.isQuick ? 300 : 2000, page);
+    const std::size_t largest = PosePipeline::of(state)->getMaxTexels() / texelsOfLayout;
+    measureLayouts(state,
+                   std::min<std::size_t>(largest, page.copySpeed > fast ? 20000
+                                                  : run.isQuick         ? 300
+                                                                        : 2000),
+                   page);
     for (const std::size_t instances : {1000, 10000, 100000})
         measureUploads(state, instances, page);
     for (const Subject& subject : subjects)

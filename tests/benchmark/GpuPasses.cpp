@@ -89,7 +89,7 @@ double copySpeedOf(osg::State& state, std::size_t bytes)
 namespace
 {
 
-constexpr std::size_t entries = 50;  ///< of a palette
+constexpr std::size_t entries = texelsOfLayout / POSE_TEXELS_PER_MATRIX;
 constexpr std::size_t vertices = 96; ///< of an instance
 
 // Vertices side by side read the same entries. All triangles are outside of the picture.
@@ -100,7 +100,7 @@ layout(location = 0) in uvec4 drawn;
 out vec4 place;
 mat3x4 entryOf(int entry)
 {
-    int texel = 3 * (isInstanceMajor ? int(drawn.x) * 50 + entry : entry * instances + int(drawn.x));
+    int texel = 3 * (isInstanceMajor ? int(drawn.x) * entryCount + entry : entry * instances + int(drawn.x));
     return mat3x4(texelFetch(palette, texel), texelFetch(palette, texel + 1), texelFetch(palette, texel + 2));
 }
 void main()
@@ -108,7 +108,7 @@ void main()
     vec4 vertex = vec4(gl_VertexID % 7, gl_VertexID % 5, 1.0, 1.0);
     place = vec4(0.0);
     for (int influence = 0; influence < 4; ++influence)
-        place += 0.25 * vec4(vertex * entryOf((gl_VertexID / 2 + influence) % 50), 1.0);
+        place += 0.25 * vec4(vertex * entryOf((gl_VertexID / 2 + influence) % entryCount), 1.0);
     gl_Position = vec4(4.0 + fract(dot(place, vec4(0.001))), 0.0, 0.0, 1.0);
 }
 )";
@@ -151,8 +151,8 @@ std::vector<glm::uvec4> levelByLevel(std::size_t instances)
 struct Layout
 {
     Layout(osg::GLExtensions& gl, bool isInstanceMajor, std::size_t instances)
-        : source(std::string("const bool isInstanceMajor = ") + (isInstanceMajor ? "true;\n" : "false;\n") +
-                 readerShader),
+        : source("const int entryCount = " + std::to_string(entries) +
+                 ";\nconst bool isInstanceMajor = " + (isInstanceMajor ? "true;\n" : "false;\n") + readerShader),
           check(gl, "reader", {source.c_str()}, {"place"}), program(drawingProgram(gl, source)),
           palette(gl, GL_RGBA32F_ARB)
     {

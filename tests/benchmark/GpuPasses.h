@@ -16,8 +16,10 @@ namespace osgGpuAnimation::benchmark
 /// Copies between two buffers. Returns the bytes a second, read and written. bytes: of each buffer.
 double copySpeedOf(osg::State& state, std::size_t bytes);
 
+constexpr std::size_t texelsOfLayout = 150; ///< of the palette of an instance in measureLayouts()
 /// Vertices that read four palette entries each: palettes with the instances of an entry side by side (as the kit's)
 /// and with the entries of an instance side by side; instances drawn in order and level by level.
+/// instances: of which the texels fit a buffer texture.
 void measureLayouts(osg::State& state, std::size_t instances, GpuPage& page);
 
 /// 16 bytes an instance that change in each step and that a pass reads: by glBufferSubData into the buffer in use (as

@@ -202,6 +202,9 @@ bool FeedbackPass::canWrite(osg::GLExtensions& gl)
         isRight = isRight && written[i + 1] == glm::vec4(i % vertices, i / vertices, 3.5f, -1.0f);
     out.release();
     pass.release();
+    for (int error = 0; error < 8 && !isRight && glGetError() != GL_NO_ERROR; ++error) // of a driver that refuses
+    {
+    }
     return isRight;
 }
 

@@ -140,7 +140,8 @@ const Change changes[] = {
          for (int index = 0; index < everybody; ++index)
          {
              CharacterMeshes& meshes = characterOf(group, index).getMeshes();
-             if (index % 3 < 2) EXPECT_TRUE(meshes.setVisible(index % 3 == 0 ? "one" : "two", false));
+             if (index % 3 == 2) continue;
+             EXPECT_TRUE(meshes.setVisible(index % 3 == 0 ? "one" : "two", false));
          }
      },
      2 + 2},

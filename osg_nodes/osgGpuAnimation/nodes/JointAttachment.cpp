@@ -194,7 +194,7 @@ Result<osg::ref_ptr<osg::MatrixTransform>> JointAttachment::detach(osg::Group& n
     osg::NodePath above = paths.front();
     above.pop_back();
     const Host host(above, *this);
-    const osg::Matrixd own = host.isFound() ? matrixIn(host) : getMatrix();
+    const osg::Matrixd own = host.isFound() ? matrixIn(host) : osg::Matrixd(getMatrix());
     const osg::Matrixd parentToWorld = osg::computeLocalToWorld(newParent.getParentalNodePaths().front());
     const osg::ref_ptr<osg::MatrixTransform> placed =
         new osg::MatrixTransform(own * osg::computeLocalToWorld(above) * osg::Matrixd::inverse(parentToWorld));

@@ -29,7 +29,8 @@ void addLights(osgUtil::PositionalStateContainer& container, const osg::Matrixd&
         const auto* light = dynamic_cast<const osg::Light*>(attribute.get());
         if (!light || light->getLightNum() < 0 || light->getLightNum() >= static_cast<int>(ViewLights::lightCount))
             continue;
-        lights[static_cast<std::size_t>(light->getLightNum())] = {light, matrix ? *matrix * after : after};
+        lights[static_cast<std::size_t>(light->getLightNum())] = {light,
+                                                                  matrix ? osg::Matrixd(*matrix) * after : after};
     }
 }
 

@@ -28,7 +28,7 @@ bool isFinite(const osg::Vec3d& vector)
 
 std::optional<GroundPoint> pointOf(const Intersector::Intersection& hit, const osg::Matrixd& aboveToWorld)
 {
-    const osg::Matrixd toWorld = (hit.matrix.valid() ? *hit.matrix : osg::Matrixd()) * aboveToWorld;
+    const osg::Matrixd toWorld = (hit.matrix.valid() ? osg::Matrixd(*hit.matrix) : osg::Matrixd()) * aboveToWorld;
     GroundPoint point{
         hit.localIntersectionPoint * toWorld,
         osg::Matrixd::transform3x3(osg::Matrixd::inverse(toWorld), osg::Vec3d(hit.localIntersectionNormal))};

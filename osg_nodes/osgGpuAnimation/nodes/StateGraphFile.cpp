@@ -3,7 +3,6 @@
 
 #include <osgGpuAnimation/nodes/files/JsonText.h>
 
-
 namespace osgGpuAnimation
 {
 

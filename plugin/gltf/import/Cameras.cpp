@@ -6,7 +6,6 @@
 #include "gltf/file/Elements.h"
 #include "gltf/file/Report.h"
 
-
 #include <osg/Math>
 #include <osg/ValueObject>
 

@@ -43,8 +43,7 @@ std::vector<std::uint32_t> firstEqual(const std::vector<VertexStream>& streams, 
                   return order != 0 ? order < 0 : a < b;
               });
     for (std::size_t i = 0; i < vertexCount; ++i)
-        first[sorted[i]] =
-            i > 0 && compare(streams, sorted[i - 1], sorted[i]) == 0 ? first[sorted[i - 1]] : sorted[i];
+        first[sorted[i]] = i > 0 && compare(streams, sorted[i - 1], sorted[i]) == 0 ? first[sorted[i - 1]] : sorted[i];
     return first;
 }
 

@@ -37,8 +37,8 @@ struct WeldedVertices
     std::size_t count = 0;               ///< welded vertices
 };
 
-/// Welds the vertices that are equal in all streams, byte by byte. It sorts them: with meshoptimizer's fixed hash a file
-/// can make the time grow by the square of the vertices.
+/// Welds the vertices that are equal in all streams, byte by byte. It sorts them: with meshoptimizer's fixed hash a
+/// file can make the time grow by the square of the vertices.
 WeldedVertices weldVertices(const std::vector<VertexStream>& streams, std::size_t vertexCount);
 
 } // namespace osgGpuAnimation::gltf

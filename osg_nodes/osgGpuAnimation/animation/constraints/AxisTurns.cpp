@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/constraints/AxisTurns.h>
 
-
 #include <glm/geometric.hpp>
 
 #include <cmath>

@@ -78,6 +78,7 @@ protected:
         const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(hero);
         const osg::ref_ptr<Outfit> guard = new Outfit;
         guard->setVisible("flag", false);
+        guard->setJointScale("tip", osg::Vec3(1.1f, 0.9f, 1.2f));
         guard->addProp("tip", makeBox(), osg::Matrixd::translate(0.1, 0.2, 0.25));
         EXPECT_TRUE(crowd->getOutfits().add(guard) && crowd->getMeshes().setPixelError(0.5f));
         const auto instance = crowd->add(osg::Matrixd::translate(5, 0, 0), hero.getController());

@@ -15,7 +15,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
-set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME libosggpuanimation0)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME libosggpuanimation${PROJECT_VERSION_MAJOR})
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_LIBRARY_OUTPUT_DIRECTORY})
@@ -27,11 +27,11 @@ set(CPACK_COMPONENT_RUNTIME_DESCRIPTION "GPU skeletal animation for OpenSceneGra
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libosggpuanimation-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "libosggpuanimation0 (= ${PROJECT_VERSION}), libopenscenegraph-dev, libglm-dev, libgl-dev")
+    "libosggpuanimation${PROJECT_VERSION_MAJOR} (= ${PROJECT_VERSION}), libopenscenegraph-dev, libglm-dev, libgl-dev")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "GPU skeletal animation for OpenSceneGraph: headers and CMake package
  For find_package(osgGpuAnimation) and #include <osgGpuAnimation/nodes/AnimatedCharacter.h>.")
 
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libosggpuanimation0
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libosggpuanimation${PROJECT_VERSION_MAJOR}
         RENAME copyright COMPONENT runtime)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libosggpuanimation-dev
         RENAME copyright COMPONENT development)

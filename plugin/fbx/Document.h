@@ -4,7 +4,6 @@
 #include <osgGpuAnimation/math/Result.h>
 
 #include <cstdint>
-#include <string>
 #include <string_view>
 #include <vector>
 

@@ -17,7 +17,7 @@
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
-#include <osgGpuAnimation/nodes/viewing/StartView.h>
+#include <osgGpuAnimation/nodes/properties/AnimatedProperties.h>
 #include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
 #include <glm/gtc/type_ptr.hpp>
@@ -35,7 +35,6 @@
 #include <limits>
 #include <map>
 #include <memory>
-#include <unordered_set>
 #include <utility>
 #include <vector>
 

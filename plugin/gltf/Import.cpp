@@ -23,6 +23,7 @@
 #include <cstdint>
 #include <map>
 #include <mutex>
+#include <random>
 
 namespace osgGpuAnimation::gltf
 {
@@ -60,18 +61,12 @@ std::string clipNames(const ImportedModel& imported)
 }
 
 /// A number in [0, 1) that differs from call to call; the n-th of a seed is the same in every process.
-/// Source: Steele, Lea and Flood, "Fast splittable pseudorandom number generators" (2014), SplitMix64.
 double nextRandomShare(std::uint32_t seed)
 {
     static std::mutex mutex;
-    static std::map<std::uint32_t, std::uint64_t> states;
+    static std::map<std::uint32_t, std::mt19937> generators;
     const std::lock_guard<std::mutex> lock(mutex);
-    std::uint64_t& state = states.try_emplace(seed, static_cast<std::uint64_t>(seed) << 32).first->second;
-    std::uint64_t bits = state += 0x9E3779B97F4A7C15u;
-    bits = (bits ^ bits >> 30) * 0xBF58476D1CE4E5B9u;
-    bits = (bits ^ bits >> 27) * 0x94D049BB133111EBu;
-    bits ^= bits >> 31;
-    return static_cast<double>(bits >> 11) * 0x1p-53;
+    return generators.try_emplace(seed, seed).first->second() * 0x1p-32;
 }
 
 /// The index in the set of the clip to play first: by name, else by the file's animation number.

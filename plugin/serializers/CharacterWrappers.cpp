@@ -7,20 +7,111 @@
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 #include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
+#include <osgGpuAnimation/nodes/GroundFeet.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
+#include <osgGpuAnimation/nodes/SpringBones.h>
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
-// A character, its attachments and callbacks in OSG's own formats.
+// A character, its attachments and callbacks in OSG's own formats. Of feet on the ground and spring chains the settings
+// and the name of the ground are stored: feet start anew, and chains begin at rest.
 
 namespace osgGpuAnimation::serializers
 {
 
 namespace
 {
+
+void transferLeg(ValueStream& stream, GroundLeg& leg)
+{
+    stream.property("Leg").values(leg.constraint, leg.toe, leg.sole, leg.touchMarker, leg.leaveMarker).endLine();
+}
+
+void transferFeet(ValueStream& stream, GroundFeet& feet)
+{
+    std::vector<GroundLeg> legs;
+    if (!stream.isReading()) legs = feet.getLegs();
+    std::string ground = feet.getGroundName();
+    auto mask = static_cast<std::size_t>(feet.getTraversalMask());
+    double reach = feet.getReach(), tilt = feet.getMaxTilt(), lock = feet.getLockDistance(), weight = feet.getWeight();
+    double distance = feet.getMaxDistance();
+    bool hasDistance = std::isfinite(distance);
+    stream.begin();
+    stream.property("Ground").values(ground, mask, reach, tilt, lock, weight, hasDistance);
+    if (hasDistance) stream.value(distance);
+    stream.endLine();
+    stream.list("Legs", legs, [&](GroundLeg& leg) { transferLeg(stream, leg); });
+    stream.close();
+    if (!stream.hasRead()) return;
+    feet.setGroundName(ground);
+    feet.setTraversalMask(static_cast<osg::Node::NodeMask>(mask));
+    if (!feet.setReach(reach) || !feet.setMaxTilt(tilt) || !feet.setLockDistance(lock) || !feet.setWeight(weight) ||
+        (hasDistance && !feet.setMaxDistance(distance)))
+        return stream.fail("feet: a number is out of range");
+    stream.require("", feet.setLegs(std::move(legs)));
+}
+
+void transferVector(ValueStream& stream, osg::Vec3& vector)
+{
+    stream.floats(vector.ptr(), 3);
+}
+
+void transferSpring(ValueStream& stream, SpringJoint& joint)
+{
+    stream.property("SpringJoint").value(joint.joint);
+    for (float* const number : {&joint.stiffness, &joint.drag, &joint.gravity, &joint.radius})
+        stream.floats(number, 1);
+    transferVector(stream, joint.gravityDirection);
+    stream.endLine();
+}
+
+void transferChain(ValueStream& stream, SpringChain& chain)
+{
+    stream.list("SpringJoints", chain.joints, [&](SpringJoint& joint) { transferSpring(stream, joint); });
+    stream.list("HitColliders", chain.colliders,
+                [&](std::size_t& collider) { stream.property("Collider").value(collider).endLine(); });
+}
+
+void transferCollider(ValueStream& stream, SpringCollider& collider)
+{
+    bool isCapsule = collider.tail.has_value();
+    osg::Vec3 tail = collider.tail.value_or(osg::Vec3());
+    stream.property("SpringCollider").value(collider.joint);
+    transferVector(stream, collider.center);
+    stream.floats(&collider.radius, 1).value(isCapsule);
+    if (isCapsule) transferVector(stream, tail);
+    stream.endLine();
+    if (stream.hasRead() && isCapsule) collider.tail = tail;
+}
+
+void transferChains(ValueStream& stream, SpringBones& springs)
+{
+    std::vector<SpringChain> chains;
+    std::vector<SpringCollider> colliders;
+    if (!stream.isReading())
+    {
+        chains = springs.getChains();
+        colliders = springs.getColliders();
+    }
+    auto layer = springs.getLayer();
+    double maxDistance = springs.getMaxDistance();
+    bool hasMaxDistance = springs.getMaxDistance() <= std::numeric_limits<double>::max();
+    stream.begin();
+    stream.property("Layer").values(layer, hasMaxDistance);
+    if (hasMaxDistance) stream.value(maxDistance);
+    stream.endLine();
+    stream.list("SpringChains", chains, [&](SpringChain& chain) { transferChain(stream, chain); });
+    stream.list("SpringColliders", colliders, [&](SpringCollider& collider) { transferCollider(stream, collider); });
+    stream.close();
+    if (!stream.hasRead()) return;
+    springs.setLayer(layer);
+    if (hasMaxDistance) springs.setMaxDistance(maxDistance);
+    stream.require("", springs.setChains(std::move(chains), std::move(colliders)));
+}
 
 void transferCharacterSet(ValueStream& stream, AnimatedCharacter& character)
 {
@@ -99,31 +190,16 @@ void transferFadeSeconds(ValueStream& stream, CharacterKeys& keys)
     keys.setFadeSeconds(seconds);
 }
 
-template <typename Class>
-osg::Object* create()
-{
-    return new Class;
-}
-
-void addNothing(osgDB::ObjectWrapper*) {}
-
-osgDB::RegisterWrapperProxy wrappers[] = {
-    {&create<AnimatedCharacter>, "osgGpuAnimation::AnimatedCharacter",
-     "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group osg::Transform osg::MatrixTransform "
-     "osgGpuAnimation::AnimatedCharacter",
-     &addCharacterProperties},
-    {&create<JointAttachment>, "osgGpuAnimation::JointAttachment",
-     "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group osg::Transform osg::MatrixTransform "
-     "osgGpuAnimation::JointAttachment",
-     [](osgDB::ObjectWrapper* wrapper) { addProperty(wrapper, "Joint", &transferJoint); }},
-    {&create<RootMotionCallback>, "osgGpuAnimation::RootMotionCallback",
-     "osg::Object osg::Callback osg::NodeCallback osgGpuAnimation::RootMotionCallback", &addNothing},
-    {&create<PoseStatistics>, "osgGpuAnimation::PoseStatistics",
-     "osg::Object osg::Callback osgGpuAnimation::PoseStatistics", &addNothing},
-    {&create<CharacterKeys>, "osgGpuAnimation::CharacterKeys",
-     "osg::Object osg::Callback osgGpuAnimation::CharacterKeys",
-     [](osgDB::ObjectWrapper* wrapper) { addProperty(wrapper, "FadeSeconds", &transferFadeSeconds); }},
-};
+const char* const nodeBases =
+    "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group osg::Transform osg::MatrixTransform";
+const Wrapper<AnimatedCharacter> character("AnimatedCharacter", nodeBases, &addCharacterProperties);
+const Wrapper<JointAttachment> attachment("JointAttachment", nodeBases, "Joint", &transferJoint);
+const char* const callbackBases = "osg::Object osg::Callback osg::NodeCallback";
+const Wrapper<RootMotionCallback> rootMotion("RootMotionCallback", callbackBases);
+const Wrapper<GroundFeet> feet("GroundFeet", callbackBases, "Feet", &transferFeet);
+const Wrapper<SpringBones> springs("SpringBones", callbackBases, "Chains", &transferChains);
+const Wrapper<PoseStatistics> statistics("PoseStatistics", "osg::Object osg::Callback");
+const Wrapper<CharacterKeys> keys("CharacterKeys", "osg::Object osg::Callback", "FadeSeconds", &transferFadeSeconds);
 
 } // namespace
 

@@ -102,11 +102,10 @@ void addMeshProperties(osgDB::ObjectWrapper* wrapper)
     wrapper->addFinishedObjectReadCallback(new MipmapsAfterReading);
 }
 
-osgDB::RegisterWrapperProxy skinnedGeometry([]() -> osg::Object* { return new SkinnedGeometry; },
-                                            "osgGpuAnimation::SkinnedGeometry",
-                                            "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Drawable "
-                                            "osg::Geometry osgGpuAnimation::SkinnedGeometry",
-                                            &addMeshProperties);
+const Wrapper<SkinnedGeometry>
+    skinnedGeometry("SkinnedGeometry",
+                    "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Drawable osg::Geometry",
+                    &addMeshProperties);
 
 // A file has no shaders: reading returns the program that all characters, or all other surfaces, share.
 osgDB::RegisterWrapperProxy characterProgramWrapper([]() -> osg::Object* { return characterProgram().release(); },

@@ -310,10 +310,8 @@ void transferLayer(ValueStream& stream, const AnimationSet& set, LayerSnapshot& 
     transferPose(stream, layer);
 }
 
-osgDB::RegisterWrapperProxy storedSet([]() -> osg::Object* { return new StoredAnimationSet; },
-                                      "osgGpuAnimation::StoredAnimationSet", "osgGpuAnimation::StoredAnimationSet",
-                                      [](osgDB::ObjectWrapper* wrapper)
-                                      { addProperty(wrapper, "Contents", &StoredAnimationSet::transferContents); });
+const Wrapper<StoredAnimationSet> storedSet("StoredAnimationSet", "", "Contents",
+                                            &StoredAnimationSet::transferContents);
 
 } // namespace
 

@@ -67,7 +67,7 @@ void transferCompactKeyframes(ValueStream& stream, ClipParts& clip, std::size_t&
     stream.require("", fillKeyframes(compact, clip, bytesLeft));
     if (!stream.isGood()) return;
     for (CompactTracks::Track& track : compact.tracks.tracks)
-        track.rotation.setRanges(track.rotation.ranges);
+        if (track.rotation.isMoving()) track.rotation.setRanges(track.rotation.ranges);
     clip.compactTracks = std::make_shared<const CompactTracks>(std::move(compact.tracks));
 }
 

@@ -226,4 +226,24 @@ void addProperty(osgDB::ObjectWrapper* wrapper, const char* name, void (*transfe
     wrapper->addSerializer(new Property<Class>(name, transfer, isWritten), osgDB::BaseSerializer::RW_USER);
 }
 
+/// Registers a class of this kit in osgDB.
+template <typename Class>
+class Wrapper : public osgDB::RegisterWrapperProxy
+{
+public:
+    /// name: without the namespace. bases: whose properties the class has before its own, separated by spaces.
+    Wrapper(const std::string& name, const std::string& bases, AddPropFunc addProperties = nullptr)
+        : osgDB::RegisterWrapperProxy([]() -> osg::Object* { return new Class; }, "osgGpuAnimation::" + name,
+                                      bases + " osgGpuAnimation::" + name, addProperties)
+    {
+    }
+    /// With one property.
+    Wrapper(const std::string& name, const std::string& bases, const char* property,
+            void (*transfer)(ValueStream&, Class&))
+        : Wrapper(name, bases)
+    {
+        addProperty(_wrapper.get(), property, transfer);
+    }
+};
+
 } // namespace osgGpuAnimation::serializers

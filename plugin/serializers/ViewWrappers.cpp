@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "serializers/ValueStream.h"
 
+#include <osgGpuAnimation/looks/Environment.h>
 #include <osgGpuAnimation/looks/ShaderHook.h>
 #include <osgGpuAnimation/looks/shading/PunctualLight.h>
 #include <osgGpuAnimation/looks/shading/ViewLights.h>
@@ -10,7 +11,11 @@
 
 #include <osg/Notify>
 
-// Lights, hosts' hooks, studios and first views in OSG's own formats. The cameras themselves are OSG's.
+#include <cmath>
+#include <limits>
+
+// Lights, surroundings, hosts' hooks, studios and first views in OSG's own formats. Of surroundings the settings and
+// the pictures are stored, not what the node makes of them. The cameras themselves are OSG's.
 
 namespace osgGpuAnimation::serializers
 {
@@ -18,10 +23,68 @@ namespace osgGpuAnimation::serializers
 namespace
 {
 
-/// A value that the light cannot have, as of a cone beyond 90 degrees, costs that value alone.
-void report(const Result<void>& taken)
+enum class Source
 {
-    if (!taken) OSG_WARN << "osgGpuAnimation: a stored light keeps its own: " << taken.error().message << std::endl;
+    Studio,
+    Panorama, ///< the picture follows
+    Faces,    ///< the cube map follows
+};
+
+Source sourceOf(const Environment& environment)
+{
+    if (environment.getPanorama()) return Source::Panorama;
+    return environment.getFaces() ? Source::Faces : Source::Studio;
+}
+
+void report(const char* consequence, const Result<void>& taken)
+{
+    if (!taken) OSG_WARN << "osgGpuAnimation: " << consequence << ": " << taken.error().message << std::endl;
+}
+
+/// The picture may be a file that is no longer there.
+const char* const studioInstead = "surroundings are the studio";
+/// A value that the light cannot have, as of a cone beyond 90 degrees, costs that value alone.
+const char* const keepsOwn = "a stored light keeps its own";
+
+void transferPanorama(ValueStream& stream, Environment& environment)
+{
+    osg::ref_ptr<osg::Image> panorama = environment.getPanorama();
+    stream.image(panorama);
+    if (stream.hasRead()) report(studioInstead, environment.setPanorama(panorama));
+}
+
+void transferFaces(ValueStream& stream, Environment& environment)
+{
+    osg::ref_ptr<osg::TextureCubeMap> faces = environment.getFaces();
+    stream.object(faces);
+    if (stream.hasRead()) report(studioInstead, environment.setFaces(faces));
+}
+
+void transferSurroundings(ValueStream& stream, Environment& environment)
+{
+    double intensity = static_cast<double>(environment.getIntensity());
+    double rotation = static_cast<double>(environment.getRotation());
+    bool isToneMapped = environment.getToneMapping();
+    Source source = sourceOf(environment);
+    stream.values(intensity, rotation, isToneMapped);
+    stream.limited("the source of surroundings", source, Source::Faces).endLine();
+    constexpr double max = std::numeric_limits<float>::max();
+    if (!(intensity >= 0.0 && intensity <= max && std::abs(rotation) <= max))
+        return stream.fail("surroundings of the intensity " + std::to_string(intensity) + ", turned by " +
+                           std::to_string(rotation));
+    if (stream.hasRead())
+    {
+        environment.setIntensity(static_cast<float>(intensity));
+        environment.setRotation(static_cast<float>(rotation));
+        environment.setToneMapping(isToneMapped);
+    }
+    if (source == Source::Studio) return;
+    stream.open("Picture", 1);
+    if (source == Source::Panorama)
+        transferPanorama(stream, environment);
+    else
+        transferFaces(stream, environment);
+    stream.close();
 }
 
 /// What osg::Light does not store.
@@ -31,9 +94,9 @@ void transferCone(ValueStream& stream, PunctualLight& light)
     stream.values(inner, range).endLine();
     if (!stream.hasRead()) return;
     const float exponent = light.getSpotExponent(); // may be the application's own
-    report(light.setRange(static_cast<float>(range)));
+    report(keepsOwn, light.setRange(static_cast<float>(range)));
     if (light.getKind() == PunctualLight::Kind::Spot)
-        report(light.setCone(static_cast<float>(inner), light.getSpotCutoff()));
+        report(keepsOwn, light.setCone(static_cast<float>(inner), light.getSpotCutoff()));
     light.setSpotExponent(exponent);
 }
 
@@ -52,25 +115,18 @@ void transferHook(ValueStream& stream, ShaderHook& hook)
     if (stream.hasRead()) hook.set(place, text);
 }
 
-osgDB::RegisterWrapperProxy wrappers[] = {
-    {[]() -> osg::Object* { return new ShaderHook; }, "osgGpuAnimation::ShaderHook",
-     "osg::Object osg::StateAttribute osgGpuAnimation::ShaderHook",
-     [](osgDB::ObjectWrapper* wrapper) { addProperty(wrapper, "Hook", &transferHook); }},
-    {[]() -> osg::Object* { return new ViewLightsCallback; }, "osgGpuAnimation::ViewLightsCallback",
-     "osg::Object osg::Callback osgGpuAnimation::ViewLightsCallback", [](osgDB::ObjectWrapper*) {}},
-    {[]() -> osg::Object* { return new PunctualLight; }, "osgGpuAnimation::PunctualLight",
-     "osgGpuAnimation::ExactNumbers osg::Object osg::StateAttribute osg::Light osgGpuAnimation::PunctualLight",
-     [](osgDB::ObjectWrapper* wrapper) { addProperty(wrapper, "Cone", &transferCone); }},
-    {[]() -> osg::Object* { return new StartView; }, "osgGpuAnimation::StartView",
-     "osg::Object osg::Callback osgGpuAnimation::StartView",
-     [](osgDB::ObjectWrapper* wrapper) { addProperty(wrapper, "Camera", &transferCamera); }},
-    {[]() -> osg::Object* { return new Studio; }, "osgGpuAnimation::Studio",
-     "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group osgGpuAnimation::Environment "
-     "osgGpuAnimation::Studio",
-     [](osgDB::ObjectWrapper*) {}}, // makes its ground and backdrop itself
-    {[]() -> osg::Object* { return new RaisedHome; }, "osgGpuAnimation::RaisedHome",
-     "osg::Object osg::Callback osgGpuAnimation::RaisedHome", [](osgDB::ObjectWrapper*) {}},
-};
+const Wrapper<Environment> environment("Environment", "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group",
+                                       "Surroundings", &transferSurroundings);
+const Wrapper<ShaderHook> hook("ShaderHook", "osg::Object osg::StateAttribute", "Hook", &transferHook);
+const Wrapper<ViewLightsCallback> viewLights("ViewLightsCallback", "osg::Object osg::Callback");
+const Wrapper<PunctualLight> light("PunctualLight",
+                                   "osgGpuAnimation::ExactNumbers osg::Object osg::StateAttribute osg::Light", "Cone",
+                                   &transferCone);
+const Wrapper<StartView> startView("StartView", "osg::Object osg::Callback", "Camera", &transferCamera);
+// Makes its ground and backdrop itself.
+const Wrapper<Studio>
+    studio("Studio", "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group osgGpuAnimation::Environment");
+const Wrapper<RaisedHome> home("RaisedHome", "osg::Object osg::Callback");
 
 } // namespace
 

@@ -218,6 +218,7 @@ CommandLine::CommandLine() : _app(description, "osggpuanim")
 {
     keepLines(*_app.get_formatter(), 0); // which the commands share
     _app.footer(std::string("`osggpuanim COMMAND --help` says more.") + exitStatus);
+    _app.set_version_flag("--version", "osggpuanim " OSGGPUANIMATION_VERSION);
     _app.require_subcommand(1);
     _app.allow_windows_style_options(false); // /folder/file is a file there, too
     addInspect();

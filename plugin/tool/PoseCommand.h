@@ -7,7 +7,6 @@
 #include <osgGpuAnimation/math/Result.h>
 
 #include <string>
-#include <vector>
 
 namespace osgGpuAnimation::tool
 {

@@ -83,6 +83,16 @@ private:
     std::vector<Passer> _people;
 };
 
+Result<void> add(AnimatedCrowd& crowd, const osg::Matrixd& placement, const char* clip, double start,
+                 const Outfit* outfit)
+{
+    AnimationController controller(crowd.getSharedAnimationSet());
+    if (const Result<void> playing = controller.play(clip); !playing) return playing;
+    controller.seek(start);
+    const Result<AnimatedCrowd::Instance> added = crowd.add(placement, controller);
+    return added ? crowd.setOutfit(added.value(), outfit) : added.error();
+}
+
 } // namespace
 
 Result<osg::ref_ptr<osg::Node>> makeStreet(osg::Node& model, const std::string& outfits)
@@ -105,18 +115,37 @@ Result<osg::ref_ptr<osg::Node>> makeStreet(osg::Node& model, const std::string& 
         auto worn = shares.value().begin();
         while (std::next(worn) != shares.value().end() && (place -= worn->share) >= 0.0)
             ++worn;
-        AnimationController controller(crowd->getSharedAnimationSet());
-        if (const Result<void> playing = controller.play(passer.clip); !playing) return playing.error();
-        controller.seek(passer.start);
-        const Result<AnimatedCrowd::Instance> added =
-            crowd->add(osg::Matrixd::scale(worn->size) * osg::Matrixd::rotate(passer.heading, osg::Vec3d(0, 0, 1)) *
-                           osg::Matrixd::translate(osg::Vec3d(passer.place, 0.0)),
-                       controller);
-        if (!added) return added.error();
-        if (const Result<void> dressed = crowd->setOutfit(added.value(), worn->outfit); !dressed)
-            return dressed.error();
+        const osg::Matrixd placement = osg::Matrixd::scale(worn->size) *
+                                       osg::Matrixd::rotate(passer.heading, osg::Vec3d(0, 0, 1)) *
+                                       osg::Matrixd::translate(osg::Vec3d(passer.place, 0.0));
+        if (const Result<void> added = add(*crowd, placement, passer.clip, passer.start, worn->outfit); !added)
+            return added.error();
     }
     return osg::ref_ptr<osg::Node>(crowd);
+}
+
+Result<std::vector<osg::ref_ptr<osg::Node>>> makeOutfitRows(osg::Node& model, const std::string& outfits)
+{
+    constexpr std::size_t inARow = 8;
+    constexpr double gap = 1.28; // metres
+    const AnimatedCharacter* person = findCharacter(model);
+    if (!person) return Error{"the model has no animated character"};
+    const Result<std::vector<OutfitShare>> shares = readOutfitsFile(outfits);
+    if (!shares) return shares.error();
+    std::vector<osg::ref_ptr<osg::Node>> rows;
+    osg::ref_ptr<AnimatedCrowd> row;
+    for (std::size_t i = 0; i < shares.value().size(); ++i)
+    {
+        if (i % inARow == 0) rows.emplace_back(row = new AnimatedCrowd(*person));
+        Outfit* const outfit = shares.value()[i].outfit;
+        if (const Result<void> known = row->getOutfits().add(outfit); !known) return known.error();
+        const double x = gap * (static_cast<double>(i % inARow) - 0.5 * (inARow - 1));
+        const osg::Matrixd placement =
+            osg::Matrixd::rotate(osg::DegreesToRadians(30.0), osg::Vec3d(0, 0, 1)) * osg::Matrixd::translate(x, 0, 0);
+        const double start = 0.23 * static_cast<double>(i);
+        if (const Result<void> added = add(*row, placement, "Walk", start, outfit); !added) return added.error();
+    }
+    return rows;
 }
 
 } // namespace osgGpuAnimation

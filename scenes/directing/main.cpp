@@ -2,9 +2,9 @@
 // Usage: direct_scenes SCENES FOLDER
 //        direct_scenes --view SCENES
 // Reads SCENES/Wanderer.glb and draws into FOLDER, without a display: Crossfade.png, Mask.png and others, each a row of
-// wanderers, Gaze.png and Hill.png, and Street.png of SCENES/People.glb. With --view it shows the hill in a window. The
-// plugin is looked for where OSG_LIBRARY_PATH says. Ends with 77 where there is no GL, and with 1 where there is no
-// display for --view.
+// wanderers, Gaze.png and Hill.png, and People.png and Street.png of SCENES/People.glb. With --view it shows the hill
+// in a window. The plugin is looked for where OSG_LIBRARY_PATH says. Ends with 77 where there is no GL, and with 1
+// where there is no display for --view.
 
 #include "Hill.h"
 #include "Props.h"
@@ -26,6 +26,7 @@
 #include <functional>
 #include <iostream>
 #include <string>
+#include <vector>
 
 using namespace osgGpuAnimation;
 
@@ -225,26 +226,28 @@ struct Sight
 {
     osg::Vec3d eye, center;
     double angle; ///< degrees, from top to bottom
+    int pictureWidth = width, pictureHeight = height;
 };
 
 class ReadPixels : public osg::Camera::DrawCallback
 {
 public:
-    void operator()(osg::RenderInfo&) const override
+    void operator()(osg::RenderInfo& info) const override
     {
+        const osg::Viewport& all = *info.getCurrentCamera()->getViewport();
         image = new osg::Image;
-        image->readPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE);
+        image->readPixels(0, 0, static_cast<int>(all.width()), static_cast<int>(all.height()), GL_RGB,
+                          GL_UNSIGNED_BYTE);
     }
     mutable osg::ref_ptr<osg::Image> image;
 };
 
 /// surroundings: of the scene. seconds: of the animation before the picture is taken.
-Result<void> draw(osg::Node* scene, Environment* surroundings, const Sight& sight, double seconds,
-                  const std::string& file)
+Result<osg::ref_ptr<osg::Image>> drawn(osg::Node* scene, Environment* surroundings, const Sight& sight, double seconds)
 {
     osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits;
-    traits->width = width;
-    traits->height = height;
+    traits->width = sight.pictureWidth;
+    traits->height = sight.pictureHeight;
     traits->samples = 4;
     traits->sampleBuffers = 1;
     const Result<osg::ref_ptr<osg::GraphicsContext>> context = createOffscreenContext(traits);
@@ -258,9 +261,10 @@ Result<void> draw(osg::Node* scene, Environment* surroundings, const Sight& sigh
     studio->addChild(scene);
     osg::Camera* camera = viewer.getCamera();
     camera->setGraphicsContext(context.value());
-    camera->setViewport(0, 0, width, height);
+    camera->setViewport(0, 0, sight.pictureWidth, sight.pictureHeight);
     camera->setClearColor(osg::Vec4(0.86f, 0.88f, 0.9f, 1.0f));
-    camera->setProjectionMatrixAsPerspective(sight.angle, static_cast<double>(width) / height, 1.0, 100.0);
+    camera->setProjectionMatrixAsPerspective(sight.angle, static_cast<double>(sight.pictureWidth) / sight.pictureHeight,
+                                             1.0, 100.0);
     camera->setViewMatrixAsLookAt(sight.eye, sight.center, osg::Vec3d(0, 0, 1));
     osg::ref_ptr<ReadPixels> reader = new ReadPixels;
     camera->setFinalDrawCallback(reader);
@@ -275,8 +279,35 @@ Result<void> draw(osg::Node* scene, Environment* surroundings, const Sight& sigh
         viewer.updateTraversal();
     }
     viewer.renderingTraversals();
-    if (!osgDB::writeImageFile(*reader->image, file)) return Error{file + ": cannot be written"};
-    return {};
+    return reader->image;
+}
+
+Result<void> write(const osg::Image& image, const std::string& file)
+{
+    return osgDB::writeImageFile(image, file) ? Result<void>() : Error{file + ": cannot be written"};
+}
+
+Result<void> draw(osg::Node* scene, Environment* surroundings, const Sight& sight, double seconds,
+                  const std::string& file)
+{
+    const Result<osg::ref_ptr<osg::Image>> image = drawn(scene, surroundings, sight, seconds);
+    return image ? write(*image.value(), file) : image.error();
+}
+
+/// The rows of makeOutfitRows(), one above the other.
+Result<void> drawRows(const std::vector<osg::ref_ptr<osg::Node>>& rows, const std::string& file)
+{
+    const Sight sight{{0, -22, 2.4}, {0, 0, 0.9}, 5.0, 1200, 231};
+    const int count = static_cast<int>(rows.size());
+    osg::ref_ptr<osg::Image> all = new osg::Image;
+    all->allocateImage(sight.pictureWidth, count * sight.pictureHeight, 1, GL_RGB, GL_UNSIGNED_BYTE);
+    for (int row = 0; row < count; ++row)
+    {
+        const auto image = drawn(rows[static_cast<std::size_t>(row)], new Studio, sight, 0.0);
+        if (!image) return image.error();
+        all->copySubImage(0, (count - 1 - row) * sight.pictureHeight, 0, image.value());
+    }
+    return write(*all, file);
 }
 
 int view(const osg::Node& model)
@@ -337,6 +368,8 @@ int main(int argc, char** argv)
     }
     const osg::ref_ptr<osg::Node> people = osgDB::readRefNodeFile(scenes + "/People.glb", new osgDB::Options("noKeys"));
     if (!people) return 1;
+    const auto rowsOfPeople = makeOutfitRows(*people, scenes + "/People.outfits.json");
+    if (!succeeds(rowsOfPeople) || !succeeds(drawRows(rowsOfPeople.value(), folder + "/People.png"))) return 1;
     const Result<osg::ref_ptr<osg::Node>> gazers = makeGazers(*model), hill = makeHill(*model),
                                           street = makeStreet(*people, scenes + "/People.outfits.json");
     if (!succeeds(gazers) || !succeeds(hill) || !succeeds(street)) return 1;

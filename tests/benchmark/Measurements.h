@@ -13,6 +13,8 @@ struct Run
 {
     osg::GraphicsContext& context; ///< current when a measurement begins
     Report& report;
+    std::string folder;             ///< of the output
+    bool isQuick = false;           ///< beQuick() was called
     int rounds = 7;                 ///< of fast measurements
     int loadRounds = 21;            ///< of loading a file
     std::size_t frameCount = 1000;  ///< characters, for the bars of whole frames
@@ -26,6 +28,7 @@ struct Run
 
     void beQuick()
     {
+        isQuick = true;
         rounds = 5;
         loadRounds = 11;
         frameCount = 100;
@@ -69,6 +72,8 @@ void measureShading(const Subject& subject, Run& run);
 /// A crowd of 24 outfits that hide a third of the parts each, compared with one all alike and with 24 crowds. Nothing
 /// for subjects of less than four parts.
 void measureOutfits(const Subject& subject, Run& run);
+/// 960 separate characters compared with a crowd of as many, alike and, with enough parts, with 24 sets of hidden ones.
+void measureSeparate(const Subject& subject, Run& run);
 /// A field of 99,856 instances of a crowd with a pixel error, of which the camera sees half: whole frames, poses and
 /// bytes.
 void measureField(const Subject& subject, Run& run);
@@ -80,6 +85,9 @@ void measureMixed(const std::vector<Subject>& subjects, Run& run);
 void measurePictures(const Subject& subject, Run& run);
 /// The memory of a field of 99,856 beyond that of a small one, on the CPU and the GPU.
 void measureMemory(const Subject& subject, Run& run);
+/// Each choice that only a GPU can judge, on the device of the run: poses of many sets, layouts, uploads and whole
+/// frames. It writes gpu.md and gpu.json into the folder and prints the page.
+void measureGpu(const std::vector<Subject>& subjects, Run& run);
 /// Loading the subject's file, compared with tinygltf's parsing and image decoding.
 void measureLoad(const Subject& subject, Run& run);
 

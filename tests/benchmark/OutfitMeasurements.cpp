@@ -2,9 +2,6 @@
 #include "Measurements.h"
 #include "Scenes.h"
 
-#include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
-
-#include <random>
 #include <set>
 #include <string>
 
@@ -13,22 +10,6 @@ namespace osgGpuAnimation::benchmark
 
 namespace
 {
-
-constexpr std::size_t outfitCount = 24;
-
-/// The parts that each outfit hides: a third of them, at random. Empty: the subject has less than four parts.
-std::vector<std::set<std::string>> hiddenParts(const Subject& subject)
-{
-    std::set<std::string> parts;
-    forEachMesh(*subject.model.character, [&](const SkinnedGeometry& mesh) { parts.insert(mesh.getName()); });
-    if (parts.size() < 4) return {};
-    std::mt19937 random(7);
-    std::vector<std::set<std::string>> hidden(outfitCount);
-    for (std::set<std::string>& ofOutfit : hidden)
-        for (const std::string& part : parts)
-            if (random() % 3 == 0) ofOutfit.insert(part);
-    return hidden;
-}
 
 /// The crowd with outfits, by turns of its instances.
 osg::ref_ptr<AnimatedCrowd> withOutfits(const osg::ref_ptr<AnimatedCrowd>& alike,

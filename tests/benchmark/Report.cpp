@@ -26,11 +26,11 @@ double now(clockid_t clock)
 
 } // namespace
 
-Stopwatch::Stopwatch() : _start{now(CLOCK_PROCESS_CPUTIME_ID), now(CLOCK_MONOTONIC)} {}
+Stopwatch::Stopwatch() : _start{now(CLOCK_PROCESS_CPUTIME_ID), now(CLOCK_MONOTONIC), 0.0} {}
 
 Spent Stopwatch::elapsed() const
 {
-    return {now(CLOCK_PROCESS_CPUTIME_ID) - _start.cpu, now(CLOCK_MONOTONIC) - _start.wall};
+    return {now(CLOCK_PROCESS_CPUTIME_ID) - _start.cpu, now(CLOCK_MONOTONIC) - _start.wall, 0.0};
 }
 
 Figure figureOf(std::vector<double> values)
@@ -163,6 +163,7 @@ Row& Row::atLeast(double limit)
 
 void Report::printTable(std::ostream& out) const
 {
+    if (_rows.empty()) return;
     out << "| what | subject | N | ours | against | theirs | ratio, CPU | bar |\n"
         << "| --- | --- | --- | --- | --- | --- | --- | --- |\n";
     for (const Row& row : _rows)

@@ -10,13 +10,17 @@
 namespace osgGpuAnimation::benchmark
 {
 
-/// Elapsed seconds: CPU time of the whole process on all processors, and wall-clock time.
+/// Elapsed seconds: CPU time of the whole process on all processors, wall-clock time and, where a GpuClock measures,
+/// the GPU's time.
 struct Spent
 {
     double cpu = 0.0;
     double wall = 0.0;
+    double gpu = 0.0;
 
-    Spent operator+(const Spent& other) const { return {cpu + other.cpu, wall + other.wall}; }
+    Spent operator+(const Spent& other) const { return {cpu + other.cpu, wall + other.wall, gpu + other.gpu}; }
+    Spent operator/(double count) const { return {cpu / count, wall / count, gpu / count}; }
+    Spent with(double gpuSeconds) const { return {cpu, wall, gpuSeconds}; }
 };
 
 /// Measures from its construction on.

@@ -4,6 +4,7 @@
 #include "PoseCrowd.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/scene/OsgMatrix.h>
 
@@ -56,6 +57,19 @@ CharacterScene::CharacterScene(const Subject& subject, std::size_t count)
         root->addChild(character);
         characters.push_back(character);
     }
+}
+
+std::vector<std::set<std::string>> hiddenParts(const Subject& subject)
+{
+    std::set<std::string> parts;
+    forEachMesh(*subject.model.character, [&](const SkinnedGeometry& mesh) { parts.insert(mesh.getName()); });
+    if (parts.size() < 4) return {};
+    std::mt19937 random(7);
+    std::vector<std::set<std::string>> hidden(outfitCount);
+    for (std::set<std::string>& ofOutfit : hidden)
+        for (const std::string& part : parts)
+            if (random() % 3 == 0) ofOutfit.insert(part);
+    return hidden;
 }
 
 void CharacterScene::pause()

@@ -9,6 +9,8 @@
 
 #include <osg/Group>
 
+#include <set>
+#include <string>
 #include <vector>
 
 namespace osgGpuAnimation::benchmark
@@ -27,6 +29,11 @@ struct CharacterScene
     osg::ref_ptr<osg::Group> root = new osg::Group;
     std::vector<osg::ref_ptr<AnimatedCharacter>> characters;
 };
+
+constexpr std::size_t outfitCount = 24;
+
+/// The parts that each of 24 outfits hides: a third of them, at random. Empty: the subject has less than four parts.
+std::vector<std::set<std::string>> hiddenParts(const Subject& subject);
 
 /// The same characters, placements and clips in one AnimatedCrowd.
 osg::ref_ptr<AnimatedCrowd> makeCrowd(const Subject& subject, std::size_t count);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "StagedViewer.h"
 
+#include "GpuClock.h"
+
 #include <osgGpuAnimation/gpu/OffscreenContext.h>
 
 #include <osgUtil/GLObjectsVisitor>
@@ -106,10 +108,27 @@ FrameCost StagedViewer::frameAt(double time)
     sceneView.cull();
     cost.cull = cull.elapsed();
     const Stopwatch draw;
+    if (_clock) _clock->begin();
     sceneView.draw();
-    glFinish();
+    if (_clock)
+        _clock->end();
+    else
+        glFinish();
     cost.draw = draw.elapsed();
     return cost;
+}
+
+Spent StagedViewer::framesInARow(int count)
+{
+    GpuClock clock(currentState());
+    glFinish();
+    const Stopwatch stopwatch;
+    _clock = &clock;
+    for (int i = 0; i < count; ++i)
+        frame();
+    _clock = nullptr;
+    glFinish();
+    return stopwatch.elapsed().with(clock.take()) / count;
 }
 
 void StagedViewer::requireNoErrors()
@@ -161,6 +180,8 @@ std::vector<Costs> race(const Viewers& viewers, int rounds)
         {
             const FrameCost cost = viewers[i]->frame();
             costs[i].whole.push_back(cost.whole());
+            costs[i].update.push_back(cost.update);
+            costs[i].cull.push_back(cost.cull);
             costs[i].updateAndCull.push_back(cost.updateAndCull());
             costs[i].draw.push_back(cost.draw);
         }

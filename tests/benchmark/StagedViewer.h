@@ -42,6 +42,8 @@ struct FrameCost
     Spent whole() const { return update + cull + draw; }
 };
 
+class GpuClock;
+
 /// An osgViewer without a display, by default of 64x64 pixels, that runs each frame stage by stage. It shows the whole
 /// scene and culls no small features.
 class StagedViewer
@@ -55,6 +57,9 @@ public:
     FrameCost frameAt(double time);
     /// Draws the next frame of 60 a second.
     FrameCost frame() { return frameAt(_time += frameTime); }
+
+    /// Draws that many frames without waiting for the GPU in between; the cost of one.
+    Spent framesInARow(int count);
 
     /// Looks from a place to another one, in place of the whole scene. fieldOfView: vertical, in degrees.
     void lookFrom(const osg::Vec3d& eye, const osg::Vec3d& centre, double fieldOfView);
@@ -81,6 +86,7 @@ private:
     osgViewer::Viewer _viewer;
     bool _hasDrawn = false;
     double _time = 0.0;
+    GpuClock* _clock = nullptr; ///< in framesInARow()
 };
 
 using Viewers = std::vector<std::unique_ptr<StagedViewer>>;
@@ -91,7 +97,7 @@ Viewers viewersOf(const std::vector<osg::ref_ptr<osg::Node>>& scenes, const osg:
 /// The costs of the frames of one viewer.
 struct Costs
 {
-    Series whole, updateAndCull, draw;
+    Series whole, update, cull, updateAndCull, draw;
 };
 
 /// Draws frames until all programs and buffers exist and osgAnimation is set up; then measures the viewers in turns.

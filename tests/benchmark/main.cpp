@@ -24,8 +24,9 @@ constexpr const char* usage = R"(osggpuanim_benchmark [options] OUTPUT_FOLDER FI
     measures this kit against osgAnimation with the characters of glTF files, prints a table and writes benchmark.json
     into the folder
     --quick           fewer characters and rounds
-    --only PART       pose, samples, constraints, chunks, compact, depth, frames, crowd, outfits, field, mixed, pictures, draws,
-                      shading, start, memory or load; several times, too
+    --only PART       pose, samples, constraints, chunks, compact, depth, frames, crowd, outfits, separate, field, mixed, pictures,
+                      draws, shading, start, memory, load or gpu (gpu.md and gpu.json: the choices that a GPU decides); several
+                      times, too
     --return-memory   leave it to glibc whether freed memory goes back to the kernel
 )";
 
@@ -100,10 +101,10 @@ constexpr std::pair<const char*, void (*)(const Subject&, Run&)> parts[] = {
     {"chunks", measureChunks},     {"compact", measureCompact},
     {"pose", measurePose},         {"frames", measureFrames},
     {"crowd", measureCrowd},       {"outfits", measureOutfits},
-    {"field", measureField},       {"draws", measureDraws},
-    {"pictures", measurePictures}, {"shading", measureShading},
-    {"start", measureStart},       {"memory", measureMemory},
-    {"load", measureLoad}};
+    {"separate", measureSeparate}, {"field", measureField},
+    {"draws", measureDraws},       {"pictures", measurePictures},
+    {"shading", measureShading},   {"start", measureStart},
+    {"memory", measureMemory},     {"load", measureLoad}};
 
 void measureAll(const Request& request, Run& run)
 {
@@ -122,6 +123,7 @@ void measureAll(const Request& request, Run& run)
         for (const auto& [part, function] : parts)
             measure(part, subject.name, [&, function = function] { function(subject, run); });
     measure("mixed", "all", [&] { measureMixed(subjects, run); });
+    measure("gpu", "all", [&] { measureGpu(subjects, run); });
     run.context.makeCurrent();
     requireNoGlErrors();
     if (!watch->warnings.empty()) throw std::runtime_error("OSG says: " + watch->warnings);
@@ -144,7 +146,7 @@ int run(const Request& request)
     if (!context->realize() || !context->makeCurrent()) throw std::runtime_error("the GL context does not realize");
     const std::map<std::string, std::string> machine = describeMachine();
     Report report;
-    Run run{*context, report};
+    Run run{*context, report, request.folder};
     if (request.isQuick) run.beQuick();
     measureAll(request, run);
     for (const auto& [name, value] : machine)

@@ -131,7 +131,27 @@ const Change changes[] = {
              EXPECT_TRUE(characterOf(group, index).setAnimationSet(other));
      },
      2 * (2 + 2)},
-    {"one has lost a mesh", [](osg::Group& group) { characterOf(group, 5).removeChild(1); }, 1 + 2 + 2},
+    {"one has lost a mesh", [](osg::Group& group) { characterOf(group, 5).removeChild(1); }, 2 + 2},
+    {"each shows some of the meshes",
+     [](osg::Group& group)
+     {
+         for (unsigned int mesh = 0; mesh < 2; ++mesh)
+             characterOf(group, 0).getChild(mesh)->setName(mesh == 0 ? "one" : "two"); // clones share it
+         for (int index = 0; index < everybody; ++index)
+         {
+             CharacterMeshes& meshes = characterOf(group, index).getMeshes();
+             if (index % 3 == 2) continue;
+             EXPECT_TRUE(meshes.setVisible(index % 3 == 0 ? "one" : "two", false));
+         }
+     },
+     2 + 2},
+    {"some with callbacks of their own",
+     [](osg::Group& group)
+     {
+         for (int index = 1; index < everybody; index += 3)
+             characterOf(group, index).setCullCallback(new osg::NodeCallback);
+     },
+     2 + 2},
     {"other things below them",
      [](osg::Group& group)
      {

@@ -97,7 +97,7 @@ TEST_P(LayersGLTest, noNumbersButGoodOnesReachTheBuffer)
         EXPECT_TRUE(entry.isFinite());
 }
 
-INSTANTIATE_TEST_SUITE_P(Forms, LayersGLTest, bothForms, nameOfForm);
+INSTANTIATE_TEST_SUITE_P(Forms, LayersGLTest, eachForm, nameOfForm);
 
 class MasksGLTest : public PoseGLTest
 {
@@ -367,7 +367,7 @@ TEST_P(PosedJointsGLTest, palettesOfHugeScalesAreFinite)
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Forms, PosedJointsGLTest, bothForms, nameOfForm);
+INSTANTIATE_TEST_SUITE_P(Forms, PosedJointsGLTest, eachForm, nameOfForm);
 
 } // namespace
 

@@ -61,9 +61,9 @@ protected:
     PosePipeline* pipeline = nullptr;
 };
 
-/// A test of both forms of the pipeline:
+/// A test of each form of the pipeline:
 ///
-///     INSTANTIATE_TEST_SUITE_P(Forms, LayersGLTest, bothForms, nameOfForm);
+///     INSTANTIATE_TEST_SUITE_P(Forms, LayersGLTest, eachForm, nameOfForm);
 class PoseFormsGLTest : public PoseGLTest, public ::testing::WithParamInterface<PosePipeline::Form>
 {
 protected:
@@ -74,11 +74,14 @@ protected:
     }
 };
 
-const auto bothForms = ::testing::Values(PosePipeline::Form::Fused, PosePipeline::Form::Separate);
+const auto eachForm =
+    ::testing::Values(PosePipeline::Form::Fused, PosePipeline::Form::Separate, PosePipeline::Form::Cpu);
 
 inline std::string nameOfForm(const ::testing::TestParamInfo<PosePipeline::Form>& form)
 {
-    return form.param == PosePipeline::Form::Fused ? "Fused" : "Separate";
+    return form.param == PosePipeline::Form::Fused ? "Fused"
+           : form.param == PosePipeline::Form::Cpu ? "Cpu"
+                                                   : "Separate";
 }
 
 } // namespace osgGpuAnimation

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 # Usage: tests/gpu/bare.sh [PART...], after tests/gpu/pack.sh; as root
 # Runs go.sh in a bare chroot, without the repository, its build and the libraries of both: copies of the installed
-# packages that go.sh needs, with Mesa's software renderer. OUT, LIMIT, FILTER and BENCH are those of go.sh.
+# packages that go.sh needs, with Mesa's software renderer. OUT, LIMIT, FILTER, GPU and BENCH are those of
+# go.sh.
 # Exit status: go.sh's.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../setup.sh"
@@ -34,9 +35,9 @@ chroot "$bare" ldconfig
 cp "$root"/.gpu/{go.sh,pack.tar.xz} "$bare/gpu"
 
 status=0
-env -i PATH=/usr/bin:/usr/sbin LIMIT="${LIMIT:-}" FILTER="${FILTER:-}" BENCH="${BENCH:-}" OUT=/gpu/out \
+env -i PATH=/usr/bin:/usr/sbin LIMIT="${LIMIT:-}" FILTER="${FILTER:-}" GPU="${GPU:-}" BENCH="${BENCH:-}" OUT=/gpu/out \
     chroot "$bare" bash /gpu/go.sh "$@" || status=$?
 mkdir -p "${OUT:=$root/.gpu/out}"
-rm -f "$OUT"/{{tests,poses,looks,bench}.log,table.md,pictures.tar.xz,benchmark.json} # of an earlier run, as go.sh does
+rm -f "$OUT"/{{tests,poses,looks,gpu,bench}.log,{table,gpu}.md,pictures.tar.xz,{gpu,benchmark}.json} # of an earlier run, as go.sh does
 [ ! -d "$bare/gpu/out" ] || cp -r "$bare/gpu/out/." "$OUT"
 exit $status

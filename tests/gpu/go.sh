@@ -5,11 +5,12 @@
 #     tests   the GL tests but those of glslangValidator (FILTER: others, as for --gtest_filter)
 #     poses   the oracle's poses, evaluated by the card, within 1e-5 of the model's size
 #     looks   pictures against the reference pictures
+#     gpu     the benchmark's page of the choices that a card decides, in less than four minutes (GPU: further options)
 #     bench   the benchmark (BENCH: its options)
 # Default: all, in this order, within LIMIT seconds together (560). The machine needs a driver with EGL and OpenGL 3.3,
-# bash and xz; python3 for poses; scikit-image and SciPy for looks. OUT (default: out/ beside this file) gets the logs
-# and table.md, which is printed last; results of an earlier run are deleted there. Exit status 0:
-# everything that was asked for ran and passed.
+# bash and xz; python3 for poses; scikit-image and SciPy for looks. OUT (default: out/ beside this file) gets the logs,
+# gpu.md, gpu.json, benchmark.json and table.md, which is printed last; results of an earlier run are deleted there.
+# Exit status 0: everything that was asked for ran and passed.
 set -euo pipefail
 
 sections=nodes,skins,weights,positions,bbox # as in tests/tool/oracle.cmake
@@ -230,6 +231,20 @@ run_looks()
     tar -C "$unpacked" -c pictures | xz >"$out/pictures.tar.xz"
 }
 
+run_gpu()
+{
+    local file more=()
+    read -ra more <<<"${GPU:-}"
+    begin gpu
+    try gpu "$build/bin/osggpuanim_benchmark" "$unpacked/gpu" "$shared"/assets/{Fox/Fox,Knight/Knight}.glb \
+        --only gpu "${more[@]}"
+    end
+    for file in gpu.md gpu.json; do
+        [ ! -f "$unpacked/gpu/$file" ] || cp "$unpacked/gpu/$file" "$out"
+    done
+    cat "$out/gpu.log"
+}
+
 run_bench()
 {
     begin bench
@@ -240,14 +255,14 @@ run_bench()
     cat "$out/bench.log"
 }
 
-[ $# -gt 0 ] || set -- tests poses looks bench
+[ $# -gt 0 ] || set -- tests poses looks gpu bench
 modules=json
 for part in "$@"; do
-    [[ " tests poses looks bench " == *" $part "* ]] || fail "expected tests, poses, looks or bench, found $part"
+    [[ " tests poses looks gpu bench " == *" $part "* ]] || fail "expected tests, poses, looks, gpu or bench, found $part"
     [ "$part" != looks ] || modules=skimage,scipy,PIL
 done
 [[ " $* " != *" looks "* && " $* " != *" poses "* ]] || python3 -c "import $modules" || fail "python3 needs $modules"
-rm -f "$out"/{{tests,poses,looks,bench}.log,table.md,pictures.tar.xz,benchmark.json} # of an earlier run
+rm -f "$out"/{{tests,poses,looks,gpu,bench}.log,{table,gpu}.md,pictures.tar.xz,{gpu,benchmark}.json} # of an earlier run
 unpack
 check_pack
 cd "$project"

@@ -6,7 +6,7 @@
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 source "$here/../setup.sh"
-unset OUT LIMIT FILTER BENCH
+unset OUT LIMIT FILTER GPU BENCH
 
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -77,7 +77,7 @@ done
 mkdir -p "$other"/{project,shared,out}
 touch "$other"/{project,shared}/theirs "$other/out/benchmark.json"
 cp "$here/go.sh" "$other"
-expect "expected tests, poses, looks or bench, found pictures" "$other/go.sh" pictures
+expect "expected tests, poses, looks, gpu or bench, found pictures" "$other/go.sh" pictures
 expect "there is no $other/pack.tar.xz" "$other/go.sh" tests
 cp -r "$folder/parent" "$folder/contents"
 mkdir "$folder/contents/libraries"

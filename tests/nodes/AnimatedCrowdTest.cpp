@@ -112,7 +112,8 @@ TEST(AnimatedCrowdTest, tintsAreBytesBetweenBlackAndWhite)
         ASSERT_TRUE(crowd->setTint(plain, osg::Vec4(1, 1, 1, 1)));
         const osg::ref_ptr<AnimatedCrowd> copy = osg::clone(crowd.get());
         PoseBatch batch(copy->getSharedAnimationSet());
-        CrowdDetail::instances(*copy).addTo(batch, {1, 0});
+        const std::vector<std::uint32_t> indices{1, 0};
+        CrowdDetail::instances(*copy).addTo(batch, indices.data(), indices.size());
         EXPECT_EQ(batch.tints(), (std::vector<std::uint32_t>{tint.bytes, 0xFFFFFFFFu}));
         ASSERT_TRUE(crowd->remove(added));
         EXPECT_EQ(crowd->getTint(added), osg::Vec4(1, 1, 1, 1));

@@ -25,7 +25,8 @@ TEST(OutfitsFileTest, hasWhatOutfitsHave)
     const ScratchFolder folder;
     const Result<std::vector<OutfitShare>> outfits =
         read(folder, R"({ "outfits": [ { "name": "pilgrim", "share": 2.5, "size": 0.75, "hide": ["Hat", "Cap"],
-            "show": "Hood", "variant": "winter", "colors": { "Coat": "#ff8000" } }, { "size": [1.2, 1.1, 0.9] } ] })");
+            "show": "Hood", "variant": "winter", "colors": { "Coat": "#ff8000" } }, { "size": [1.2, 1.1, 0.9],
+            "proportions": { "Head": [1.5, 1, 2] } } ] })");
     ASSERT_TRUE(hasError(outfits, ""));
     ASSERT_EQ(outfits.value().size(), 2u);
     const OutfitShare& pilgrim = outfits.value()[0];
@@ -38,6 +39,7 @@ TEST(OutfitsFileTest, hasWhatOutfitsHave)
     EXPECT_EQ(pilgrim.outfit->getColors().at("Coat"), osg::Vec4(1, 128 / 255.0f, 0, 1));
     EXPECT_EQ(outfits.value()[1].share, 1.0);
     EXPECT_EQ(outfits.value()[1].size, osg::Vec3d(1.2, 1.1, 0.9));
+    EXPECT_EQ(outfits.value()[1].outfit->getJointScales().at("Head"), osg::Vec3(1.5f, 1, 2));
 }
 
 TEST(OutfitsFileTest, faultsNameTheMember)
@@ -56,6 +58,7 @@ TEST(OutfitsFileTest, faultsNameTheMember)
         {R"({ "share": 0 })", "outfits: there is none with a share above 0"},
         {R"({ "size": 0 })", "outfits[0].size: expected above 0"},
         {R"({ "size": [1, 1, -1] })", "outfits[0].size: expected above 0"},
+        {R"({ "proportions": { "Head": 0 } })", "outfits[0].proportions.Head: expected above 0"},
         {R"({ "size": [1, 1] })", "outfits[0].size: expected a number or an array of three numbers"},
         {R"({ "colors": { "Coat": "red" } })", "outfits[0].colors.Coat: \"red\" is no colour like \"#7a5c3a\""},
         {R"({ "colors": ["#000000"] })", "outfits[0].colors: expected an object, found array"},

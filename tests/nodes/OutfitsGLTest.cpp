@@ -34,6 +34,13 @@ void setColors(AnimatedCrowd& crowd, unsigned int mesh, const osg::Vec4& color)
     std::fill(colors.begin(), colors.end(), color);
 }
 
+/// Of the first instance, by a layer.
+void scaleJoint(AnimatedCrowd& crowd, const osg::Vec3& scale)
+{
+    const std::size_t joint = crowd.getAnimationSet().skeleton().jointNamed("side").value();
+    EXPECT_TRUE(crowd.getController(0)->layer(1).pose().setScale(joint, glm::vec3(scale.x(), scale.y(), scale.z())));
+}
+
 const DressCase dresses[] = {
     {"hidden", [](Outfit& outfit) { outfit.setVisible("front", false); },
      [](AnimatedCrowd& crowd) { EXPECT_TRUE(hasError(crowd.getMeshes().setVisible("front", false), "")); }},
@@ -51,6 +58,10 @@ const DressCase dresses[] = {
      { outfit.setPicture("leather", makePicture(0, 128, 255)), outfit.setColor("leather", osg::Vec4(1, 0.5f, 0, 1)); },
      [](AnimatedCrowd& crowd)
      { setTexture(crowd, 1, makePicture(0, 128, 255)), setColors(crowd, 1, osg::Vec4(1, 0.5f, 0, 1)); }},
+    {"jointScaleInAFade", [](Outfit& outfit) { outfit.setJointScale("side", osg::Vec3(1.5f, 1, 0.5f)); },
+     [](AnimatedCrowd& crowd) { scaleJoint(crowd, osg::Vec3(1.5f, 1, 0.5f)); }},
+    {"jointScale", [](Outfit& outfit) { outfit.setJointScale("side", osg::Vec3(0.5f, 0.5f, 0.7f)); },
+     [](AnimatedCrowd& crowd) { scaleJoint(crowd, osg::Vec3(0.5f, 0.5f, 0.7f)); }},
 };
 
 /// Two rows and three columns of three units.

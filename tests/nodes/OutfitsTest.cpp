@@ -59,6 +59,10 @@ INSTANTIATE_TEST_SUITE_P(
                   "the prop on joint \"tip\": it has no node"},
         FaultCase{"emptyNode", [](Outfit& outfit) { outfit.addProp("tip", new osg::Group); },
                   "the prop on joint \"tip\": \"\" has no still geometry with vertices of three floats"},
+        FaultCase{"scaledJoint", [](Outfit& outfit) { outfit.setJointScale("tail", osg::Vec3(1, 1, 1)); },
+                  "there is no joint \"tail\""},
+        FaultCase{"jointScale", [](Outfit& outfit) { outfit.setJointScale("tip", osg::Vec3(1, 1, 0.01f)); },
+                  "the scale of joint \"tip\" is not in [0.1, 10]"},
         FaultCase{"mirror", [](Outfit& outfit) { outfit.addProp("tip", makeBox(), osg::Matrixd::scale(-1, 1, 1)); },
                   "the prop on joint \"tip\": the transform to the joint"}),
     [](const ::testing::TestParamInfo<FaultCase>& info) { return std::string(info.param.name); });
@@ -158,6 +162,27 @@ TEST(OutfitsTest, hitsAndStatisticsMeetShownPartsAlone)
     EXPECT_TRUE(hasError(crowd->getOutfits().replace(bare, bare), ""));
     EXPECT_EQ(hitsAt(*crowd, 2.6, 0.1), (std::set<std::string>{"side of bare", "box of bare"}));
     EXPECT_EQ(hitsAt(*crowd, -1.4, 0.1), std::set<std::string>()) << "without an outfit it is hidden";
+}
+
+TEST(OutfitsTest, proportionsScaleJointsHitsAndBounds)
+{
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeDressedCharacter());
+    const AnimatedCrowd::Instance instance = addInstances(*crowd, {osg::Matrixd()}, still()).front();
+    const osg::ref_ptr<Outfit> tall =
+        makeOutfit([](Outfit& outfit) { outfit.setJointScale("tip", osg::Vec3(1, 1, 3)); }, "tall");
+    EXPECT_TRUE(hasError(crowd->getOutfits().add(tall), ""));
+    EXPECT_TRUE(hasError(crowd->setOutfit(instance, tall), ""));
+    EXPECT_EQ(osg::Vec3d(0, 0, 1) * crowd->jointToCrowd(instance, "tip").value(), osg::Vec3d(0, 0, 3));
+    EXPECT_EQ(hitsAt(*crowd, 0.5, 2.5), std::set<std::string>{"front of tall"});
+    EXPECT_TRUE(crowd->getBound().contains(osg::Vec3(1, 0, 3)));
+    tall->setJointScale("tip", osg::Vec3(1, 1, 2));
+    EXPECT_TRUE(hasError(crowd->getOutfits().replace(tall, tall), ""));
+    EXPECT_EQ(hitsAt(*crowd, 0.5, 1.5), std::set<std::string>{"front of tall"});
+    EXPECT_EQ(hitsAt(*crowd, 0.5, 2.5), std::set<std::string>());
+    const osg::ref_ptr<AnimatedCrowd> copy = osg::clone(crowd.get(), osg::CopyOp::SHALLOW_COPY);
+    EXPECT_TRUE(crowd->getOutfits().remove(tall));
+    EXPECT_EQ(hitsAt(*crowd, 0.5, 1.5), std::set<std::string>());
+    EXPECT_EQ(hitsAt(*copy, 0.5, 1.5), std::set<std::string>{"front of tall"});
 }
 
 TEST(OutfitsTest, boundsContainProps)

@@ -519,6 +519,7 @@ TEST_F(ReadmeTest, outfits)
     guard->setVariant("unlit");
     guard->setPicture("Pack", osgDB::readRefImageFile("lion.png"));
     guard->addProp("Head", osgDB::readRefNodeFile("helmet.glb"), osg::Matrix::translate(0, 0.1, 0));
+    guard->setJointScale("Head", osg::Vec3(0.9f, 0.9f, 0.9f));
     succeeded(crowd->getOutfits().add(guard));
     succeeded(crowd->setOutfit(fox, guard));
     EXPECT_EQ(crowd->getOutfit(fox), guard);

@@ -1,15 +1,16 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Usage: tests/ports/debian.sh bookworm|trixie|sid [view]
+# Usage: tests/ports/debian.sh bookworm|trixie|sid [view|packages]
 # Makes a bare Debian of that name in build-NAME/ from the mirrors that apt has here, copies this tree and ../shared into
-# it, and runs scenes/view.sh and, without `view`, tests/run.sh there, as a user would. What build-NAME/ has already is kept
-# and used again. Needs root, mmdebstrap and git. Exit status 0: both passed. Sid changes daily, so its result has a date.
+# it, and runs scenes/view.sh and, without `view`, tests/run.sh there, as a user would; with `packages`, it makes the Debian
+# packages instead, in build-NAME/src/osgGpuAnimation/build-deb/. What build-NAME/ has already is kept and used again. Needs
+# root, mmdebstrap and git. Exit status 0: all passed. Sid changes daily, so its result has a date.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../setup.sh"
 
 name=${1:-}
-if [[ ! "$name" =~ ^(bookworm|trixie|sid)$ ]] || [[ ! "${2:-view}" == view ]]; then
-    sed -n '3,6s/^# //p' "${BASH_SOURCE[0]}"
+if [[ ! "$name" =~ ^(bookworm|trixie|sid)$ ]] || [[ ! "${2:-view}" =~ ^(view|packages)$ ]]; then
+    sed -n '3,7s/^# //p' "${BASH_SOURCE[0]}"
     exit 2
 fi
 folder=$root/build-$name
@@ -58,6 +59,19 @@ git -C "$root" -c safe.directory='*' ls-files -z --cached --others --exclude-sta
 if [ $# -eq 1 ] && [ -d "$root/../shared" ]; then # the tests need it
     rm -rf "$folder/src/shared"
     cp -rL "$root/../shared" "$folder/src/shared"
+fi
+
+# Runs in the tree, inside.
+make_packages='
+    source tests/setup.sh
+    build=$root/build-deb
+    install_missing "${view_packages[@]}" dpkg-dev file
+    configure_release -DCMAKE_INSTALL_PREFIX=/usr && build_targets
+    cd "$build" && cpack
+'
+if [ "${2:-}" = packages ]; then
+    inside sh -c 'cd "$0" && exec bash -euo pipefail -c "$1"' "$tree" "$make_packages" </dev/null
+    exit
 fi
 
 echo "Debian $name ($(cat "$folder/etc/debian_version")) on $(date -u +%F): scenes/view.sh"

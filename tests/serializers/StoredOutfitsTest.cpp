@@ -19,6 +19,7 @@ TEST(StoredOutfitsTest, comeBackWithTheirInstances)
     guard->setVariant("winter");
     guard->setColor("leather", osg::Vec4(0.1f, 0.3f, 1, 0.7f));
     guard->setPicture("cloth", makePicture(10, 20, 30));
+    guard->setJointScale("tip", osg::Vec3(1.0f / 3.0f, 1, 2));
     guard->addProp("tip", makeBox(), osg::Matrixd::translate(0.1, 0.2, 1.0 / 3.0));
     for (const osg::ref_ptr<Outfit>& outfit : {removed, plain, guard})
         ASSERT_TRUE(hasError(crowd->getOutfits().add(outfit), ""));
@@ -38,6 +39,7 @@ TEST(StoredOutfitsTest, comeBackWithTheirInstances)
         EXPECT_EQ(again.getVisibility(), guard->getVisibility());
         EXPECT_EQ(again.getVariant(), "winter");
         EXPECT_EQ(again.getColors(), guard->getColors());
+        EXPECT_EQ(again.getJointScales(), guard->getJointScales());
         ASSERT_EQ(again.getPictures().count("cloth"), 1u) << format;
         EXPECT_EQ(again.getPictures().at("cloth")->getColor(0, 0), guard->getPictures().at("cloth")->getColor(0, 0));
         ASSERT_EQ(again.getProps().size(), 1u) << format;

@@ -83,6 +83,7 @@ TEST_F(ToolTest, helpTeachesTheCommands)
                 {"inspect", "pose", "render", "convert", "osggpuanim render fox.glb -o fox.png", "Exit status"});
     for (const std::string command : {"inspect", "pose", "render", "convert"})
         expectWords(outputOf({command, "--help"}), {("  osggpuanim " + command).c_str()});
+    EXPECT_EQ(outputOf({"--version"}), "osggpuanim " OSGGPUANIMATION_VERSION "\n");
 }
 
 TEST_F(ToolTest, inspectSaysWhatIsInTheFile)

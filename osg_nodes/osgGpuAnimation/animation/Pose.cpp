@@ -63,18 +63,26 @@ const PosedKeyframe* findPosed(const AnimationSet& set, const PoseInstruction& i
 class Sources
 {
 public:
-    Sources(const AnimationSet& set, const PoseInstruction& instruction) : _set(set)
+    Sources(const AnimationSet& set, const PoseInstruction& instruction)
+        : Sources(set, instruction.samples.data(), instruction.sampleCount,
+                  [&](const BlendSample& sample) { return findPosed(set, instruction, sample); })
     {
-        _count = std::min(instruction.sampleCount, PoseInstruction::maxSamples);
+    }
+
+    /// find: gives the keyframe of a posed sample, or null.
+    template <typename FindPosed>
+    Sources(const AnimationSet& set, const BlendSample* samples, std::size_t count, const FindPosed& find)
+        : _set(set), _count(std::min(count, PoseInstruction::maxSamples))
+    {
         for (std::size_t i = 0; i < _count; ++i)
         {
-            const BlendSample& sample = instruction.samples[i];
+            const BlendSample& sample = samples[i];
             Source& source = _sources[i];
             source.control = sample.control;
             if (!(sample.weight > 0.0f)) continue;
             if ((sample.control & POSE_SAMPLE_POSED) != 0)
             {
-                source.posed = findPosed(set, instruction, sample);
+                source.posed = find(sample);
                 if (!source.posed) continue;
             }
             else
@@ -113,20 +121,37 @@ public:
 private:
     const AnimationSet& _set;
     std::array<Source, PoseInstruction::maxSamples> _sources;
-    std::size_t _count = 0;
+    std::size_t _count;
+};
+
+/// The targets of all constraints, or none, and the space that they are in.
+struct Targets
+{
+    explicit Targets(const PoseInstruction& instruction)
+        : first(instruction.targets.data()), count(instruction.targets.size())
+    {
+    }
+    Targets(const AnimationSet& set, const BatchedPose& pose, const AffineMatrix& rootToModel)
+        : first(pose.targets), count(pose.targets ? set.constraints().size() : 0), rootToSpace(rootToModel.toColumns())
+    {
+    }
+
+    const ConstraintTarget* first;
+    std::size_t count;
+    glm::dmat4 rootToSpace{1.0};
 };
 
 /// The joints of a pose, mixed on demand: a joint's matrix and the chains of constraints need few of them.
 class MixedJoints
 {
 public:
-    MixedJoints(const Sources& sources, const AnimationSet& set, const PoseInstruction& instruction,
+    MixedJoints(const Sources& sources, const AnimationSet& set, const Targets& targets,
                 std::vector<JointTransform>& joints, std::vector<bool>& isMixed)
         : _sources(sources), _skeleton(set.skeleton()), _joints(joints), _isMixed(isMixed)
     {
         const std::vector<ConstraintChain>& chains = set.constraintChains();
-        for (std::size_t c = 0; c < std::min(chains.size(), instruction.targets.size()); ++c)
-            if (instruction.targets[c].weight > 0.0f) solve(chains[c], instruction.targets[c]);
+        for (std::size_t c = 0; c < std::min(chains.size(), targets.count); ++c)
+            if (targets.first[c].weight > 0.0f) solve(chains[c], targets.first[c], targets.rootToSpace);
     }
 
     const JointTransform& operator[](int joint) const
@@ -146,14 +171,14 @@ public:
     }
 
 private:
-    void solve(const ConstraintChain& chain, const ConstraintTarget& target)
+    void solve(const ConstraintChain& chain, const ConstraintTarget& target, const glm::dmat4& rootToSpace)
     {
         thread_local std::vector<JointTransform> solved;
         solved.clear();
         for (const int joint : chain.joints)
             solved.push_back((*this)[joint]);
         const int parent = _skeleton.joint(chain.joints.front()).parent;
-        solveConstraint(chain, target, toModel(parent), solved);
+        solveConstraint(chain, target, limitedProduct(rootToSpace, toModel(parent)), solved);
         for (std::size_t place = 0; place < solved.size(); ++place)
             _joints[chain.joints[place]] = solved[place];
     }
@@ -171,17 +196,33 @@ AffineMatrix weightsAsMatrix(const JointTransform& block)
     return matrix;
 }
 
+void mix(const AnimationSet& set, const Sources& sources, const Targets& targets,
+         std::vector<JointTransform>& outTracks)
+{
+    outTracks.resize(set.trackCount());
+    for (std::size_t track = 0; track < outTracks.size(); ++track)
+        outTracks[track] = sources.track(track);
+    if (targets.count == 0) return;
+    std::vector<bool> isMixed(outTracks.size(), true);
+    const MixedJoints constrained(sources, set, targets, outTracks, isMixed);
+}
+
+void evaluate(const AnimationSet& set, const Sources& sources, const Targets& targets, const AffineMatrix& rootToModel,
+              std::vector<AffineMatrix>& outPalette)
+{
+    // Picking calls this often: each thread keeps the memory.
+    thread_local std::vector<JointTransform> tracks;
+    thread_local std::vector<AffineMatrix> joints;
+    mix(set, sources, targets, tracks);
+    jointToModel(set, tracks, rootToModel, joints);
+    palette(set, tracks, joints, outPalette);
+}
+
 } // namespace
 
 void mix(const AnimationSet& set, const PoseInstruction& instruction, std::vector<JointTransform>& outTracks)
 {
-    const Sources sources(set, instruction);
-    outTracks.resize(set.trackCount());
-    for (std::size_t track = 0; track < outTracks.size(); ++track)
-        outTracks[track] = sources.track(track);
-    if (instruction.targets.empty()) return;
-    std::vector<bool> isMixed(outTracks.size(), true);
-    const MixedJoints constrained(sources, set, instruction, outTracks, isMixed);
+    mix(set, Sources(set, instruction), Targets(instruction), outTracks);
 }
 
 void jointToModel(const AnimationSet& set, const std::vector<JointTransform>& tracks, const AffineMatrix& rootToModel,
@@ -209,7 +250,7 @@ AffineMatrix jointToModel(const AnimationSet& set, const PoseInstruction& instru
         thread_local std::vector<bool> isMixed;
         joints.resize(skeleton.jointCount());
         isMixed.assign(skeleton.jointCount(), false);
-        const MixedJoints mixed(sources, set, instruction, joints, isMixed);
+        const MixedJoints mixed(sources, set, Targets(instruction), joints, isMixed);
         return AffineMatrix::fromColumns(mixed.toModel(static_cast<int>(joint)));
     }
     AffineMatrix matrix = sources.track(joint).toMatrix();
@@ -246,12 +287,15 @@ void palette(const AnimationSet& set, const std::vector<JointTransform>& tracks,
 void evaluate(const AnimationSet& set, const PoseInstruction& instruction, const AffineMatrix& rootToModel,
               std::vector<AffineMatrix>& outPalette)
 {
-    // Picking calls this often: each thread keeps the memory.
-    thread_local std::vector<JointTransform> tracks;
-    thread_local std::vector<AffineMatrix> joints;
-    mix(set, instruction, tracks);
-    jointToModel(set, tracks, rootToModel, joints);
-    palette(set, tracks, joints, outPalette);
+    evaluate(set, Sources(set, instruction), Targets(instruction), rootToModel, outPalette);
+}
+
+void evaluate(const AnimationSet& set, const BatchedPose& pose, const AffineMatrix& rootToModel,
+              std::vector<AffineMatrix>& outPalette)
+{
+    const auto find = [&](const BlendSample& sample) { return pose.posed[sample.keyframe].get(); };
+    evaluate(set, Sources(set, pose.samples, pose.sampleCount, find), Targets(set, pose, rootToModel), rootToModel,
+             outPalette);
 }
 
 } // namespace osgGpuAnimation::Pose

@@ -3,10 +3,13 @@
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 
+#include <memory>
 #include <vector>
 
 namespace osgGpuAnimation
 {
+
+class PosedKeyframe;
 
 /// The CPU twin of the GPU stages, for tools, picking and tests. It computes jointToModel parents first and
 /// entry = jointToModel · inverseBind: the direct form, which tests compare with the shaders' shorter one. Palettes are
@@ -36,6 +39,20 @@ void palette(const AnimationSet& set, const std::vector<JointTransform>& tracks,
 
 /// All stages. outPalette: set.paletteSize() entries.
 void evaluate(const AnimationSet& set, const PoseInstruction& instruction, const AffineMatrix& rootToModel,
+              std::vector<AffineMatrix>& outPalette);
+
+/// A pose as a PoseBatch keeps it.
+struct BatchedPose
+{
+    const BlendSample* samples = nullptr;
+    std::size_t sampleCount = 0; ///< at most PoseInstruction::maxSamples
+    /// The posed keyframes; BlendSample::keyframe of a posed sample is an index of these.
+    const std::shared_ptr<const PosedKeyframe>* posed = nullptr;
+    /// One per constraint of the set, already moved by rootToModel; null: none has an effect.
+    const ConstraintTarget* targets = nullptr;
+};
+/// All stages. outPalette: set.paletteSize() entries.
+void evaluate(const AnimationSet& set, const BatchedPose& pose, const AffineMatrix& rootToModel,
               std::vector<AffineMatrix>& outPalette);
 
 } // namespace Pose

@@ -2,7 +2,6 @@
 #include <osgGpuAnimation/animation/RootMotion.h>
 
 #include <osgGpuAnimation/math/Hermite.h>
-#include <osgGpuAnimation/math/JointTransform.h>
 
 #include <glm/common.hpp>
 #include <glm/gtc/quaternion.hpp>

@@ -160,10 +160,10 @@ void FeedbackPass::run(std::size_t firstVertex, std::size_t count, GLuint buffer
 }
 
 void FeedbackPass::runInstanced(std::size_t vertexCount, std::size_t instanceCount, std::size_t firstInstance,
-                                GLuint buffer, std::size_t byteOffset)
+                                GLuint buffer, std::size_t byteOffset, bool triangles)
 {
     if (vertexCount == 0 || instanceCount == 0) return;
-    const GLenum mode = vertexCount % verticesOfFastest == 0 ? GL_TRIANGLES : GL_POINTS;
+    const GLenum mode = triangles && vertexCount % verticesOfFastest == 0 ? GL_TRIANGLES : GL_POINTS;
     begin(mode, vertexCount * instanceCount, buffer, byteOffset);
     const auto vertices = static_cast<GLsizei>(vertexCount), instances = static_cast<GLsizei>(instanceCount);
     if (firstInstance == 0)
@@ -171,6 +171,41 @@ void FeedbackPass::runInstanced(std::size_t vertexCount, std::size_t instanceCou
     else
         _gl->glDrawArraysInstancedBaseInstance(mode, 0, vertices, instances, static_cast<GLuint>(firstInstance));
     _gl->glEndTransformFeedback();
+}
+
+bool FeedbackPass::canOffsetInstances(const osg::GLExtensions& gl)
+{
+    // The pointer alone says nothing: libraries of GL have functions that their drivers lack.
+    return gl.glDrawArraysInstancedBaseInstance &&
+           osg::isGLExtensionOrVersionSupported(gl.contextID, "GL_ARB_base_instance", 4.2f);
+}
+
+bool FeedbackPass::canWrite(osg::GLExtensions& gl)
+{
+    constexpr std::size_t vertices = verticesOfFastest, instances = 2, texels = vertices * instances + 2;
+    const char* const shader = "out vec4 place;\n"
+                               "void main() { place = vec4(gl_VertexID, gl_InstanceID, 3.5, -1.0); }\n";
+    FeedbackPass pass(gl, "feedback check", {shader}, {"place"});
+    if (!pass.valid()) return false;
+    const glm::vec4 untouched(7.0f);
+    std::array<glm::vec4, texels> written;
+    written.fill(untouched);
+    BufferTexture out(gl, GL_RGBA32F_ARB);
+    out.upload(written.data(), sizeof written);
+    pass.use();
+    pass.runInstanced(vertices, instances, 0, out.buffer(), sizeof untouched);
+    gl.glBindBuffer(GL_TEXTURE_BUFFER, out.buffer());
+    gl.glGetBufferSubData(GL_TEXTURE_BUFFER, 0, sizeof written, written.data());
+    gl.glBindBuffer(GL_TEXTURE_BUFFER, 0);
+    bool isRight = written.front() == untouched && written.back() == untouched;
+    for (std::size_t i = 0; i < vertices * instances; ++i)
+        isRight = isRight && written[i + 1] == glm::vec4(i % vertices, i / vertices, 3.5f, -1.0f);
+    out.release();
+    pass.release();
+    for (int error = 0; error < 8 && !isRight && glGetError() != GL_NO_ERROR; ++error) // of a driver that refuses
+    {
+    }
+    return isRight;
 }
 
 void FeedbackPass::release()

@@ -111,15 +111,15 @@ public:
     /// Draws the points [firstVertex, firstVertex + count) and writes 16 bytes per output and point into the buffer.
     void run(std::size_t firstVertex, std::size_t count, GLuint buffer, std::size_t byteOffset);
     /// Does the same for the vertices [0, vertexCount) of each GL instance, instance by instance. It draws triangles if
-    /// vertexCount is a multiple of 3, since llvmpipe has a fixed cost per primitive. firstInstance: added to the index
-    /// of attributes with a divisor; other than 0 only if canOffsetInstances().
+    /// vertexCount is a multiple of 3 and `triangles` is true, since llvmpipe has a fixed cost per primitive.
+    /// firstInstance: added to the index of attributes with a divisor; other than 0 only if canOffsetInstances().
     void runInstanced(std::size_t vertexCount, std::size_t instanceCount, std::size_t firstInstance, GLuint buffer,
-                      std::size_t byteOffset);
+                      std::size_t byteOffset, bool triangles = true);
     /// True if the context has OpenGL 4.2 or ARB_base_instance.
-    static bool canOffsetInstances(const osg::GLExtensions& gl)
-    {
-        return gl.glDrawArraysInstancedBaseInstance != nullptr;
-    }
+    static bool canOffsetInstances(const osg::GLExtensions& gl);
+    /// True if feedback writes what a shader computes: runs one tiny pass and reads it back. Some drivers write
+    /// nothing, or zeros. The vertex array object of the scope has no attributes.
+    static bool canWrite(osg::GLExtensions& gl);
 
     /// Deletes the program. The context must be current.
     void release();

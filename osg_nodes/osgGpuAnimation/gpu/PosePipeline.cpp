@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/gpu/buffers/AnimationBuffers.h>
 #include <osgGpuAnimation/gpu/buffers/PosePalette.h>
+#include <osgGpuAnimation/gpu/passes/CpuEvaluation.h>
 #include <osgGpuAnimation/gpu/passes/FusedEvaluation.h>
 #include <osgGpuAnimation/gpu/passes/SeparateEvaluation.h>
 
@@ -12,8 +13,10 @@
 #include <osg/Notify>
 
 #include <algorithm>
+#include <cstdlib>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <string>
 
 #ifndef GL_MAX_TEXTURE_BUFFER_SIZE
@@ -60,15 +63,28 @@ std::size_t widestPassOf(const AnimationSet& set)
 constexpr std::size_t separateDraws = 3;
 constexpr std::size_t measuredLevels = 8; ///< of entriesWorthADraw(); an entry of the separate form walks to the root
 
+std::string renderer()
+{
+    const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+    return name ? name : "";
+}
+
 /// Measured with sets of 50 joints in 8 and 16 levels. NVIDIA H200: separate 73 and 75 µs and 16 ns a joint, fused 200
 /// and 330 µs and 7 ns. llvmpipe: 9 µs and 100 ns, 21 µs and 30 ns.
 std::size_t entriesWorthADraw()
 {
-    const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-    const std::string renderer = name ? name : "";
     for (const char* software : {"llvmpipe", "softpipe", "SwiftShader", "Basic Render"})
-        if (renderer.find(software) != std::string::npos) return 32;
+        if (renderer().find(software) != std::string::npos) return 32;
     return 2560;
+}
+
+/// Texels of a buffer texture.
+std::size_t maxTexelsOfContext()
+{
+    GLint limit = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &limit);
+    const char* wanted = std::getenv("OSGGPUANIMATION_MAX_TEXELS");
+    return static_cast<std::size_t>(std::max(wanted ? std::min(limit, std::atoi(wanted)) : limit, 0));
 }
 
 } // namespace
@@ -80,6 +96,7 @@ struct PosePipeline::Parts
     void forgetUnusedSets();
     std::size_t chunkCapacity(const PoseBatch& batch) const;
     bool hasRoomForMasks(SetResources& resources, const PoseBatch& batch) const;
+    bool isOnCpu(osg::State& state);
     bool isSeparate(const PoseBatch& batch, const std::vector<PosePalette::Chunk*>& chunks) const;
     bool mayBeSeparate(const AnimationSet& set, std::size_t instances) const;
     SetResources& resourcesOf(const PoseBatch& batch);
@@ -87,15 +104,17 @@ struct PosePipeline::Parts
     const Options& options;
     EvaluationContext context;
     std::map<const AnimationSet*, SetResources> sets;
+    std::optional<bool> canWriteFeedback; ///< none: not tried yet
 };
 
 PosePipeline::PosePipeline(unsigned int contextId) : osg::GraphicsObjectManager("PosePipeline", contextId)
 {
     osg::GLExtensions& gl = *osg::GLExtensions::Get(contextId, true);
     _parts = std::make_unique<Parts>(_options, gl);
-    GLint maxTexels = 0;
-    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &maxTexels);
-    _options.maxTexels = static_cast<std::size_t>(std::max(maxTexels, 0));
+    const char* const poses = std::getenv("OSGGPUANIMATION_POSES");
+    if (poses && std::string(poses) == "cpu") _options.form = Form::Cpu;
+    _options.maxTexels = maxTexelsOfContext();
+    _options.usesBaseInstances = FeedbackPass::canOffsetInstances(gl);
     _options.entriesWorthADraw = entriesWorthADraw();
     _isSupported =
         gl.glVersion >= 3.3f && gl.glBeginTransformFeedback && gl.glTexBuffer && _parts->context.copyBufferSubData;
@@ -163,6 +182,18 @@ bool PosePipeline::evaluate(osg::State& state, const PoseBatch& batch, std::size
     if (changed.empty()) return true;
 
     EvaluationContext& context = _parts->context;
+    context.drawsTriangles = _options.drawsTriangles;
+    context.usesBaseInstances = _options.usesBaseInstances;
+    if (_parts->isOnCpu(state))
+    {
+        for (PosePalette::Chunk* chunk : changed)
+        {
+            evaluateOnCpu(batch, *chunk, context.onCpu);
+            chunk->isEvaluated = true;
+            _counters.instancesEvaluated += chunk->size;
+        }
+        return true;
+    }
     FeedbackVertexArrays::Names& vertexArrays = context.vertexArrays.of(state);
     const bool isSeparate = _parts->isSeparate(batch, changed);
     FeedbackScope scope(state, isSeparate ? vertexArrays.empty : vertexArrays.pose);
@@ -192,6 +223,22 @@ bool PosePipeline::evaluateInEachForm(osg::State& state, const PoseBatch& batch,
     }
     _options.form = Form::Automatic;
     return isEvaluated;
+}
+
+/// True if the CPU computes the palettes. Tries feedback once, before the first pass.
+bool PosePipeline::Parts::isOnCpu(osg::State& state)
+{
+    if (options.form == Form::Cpu) return true;
+    if (!canWriteFeedback)
+    {
+        const FeedbackScope scope(state, context.vertexArrays.of(state).empty);
+        canWriteFeedback = FeedbackPass::canWrite(*context.gl);
+        if (!*canWriteFeedback)
+            OSG_WARN << "osgGpuAnimation: transform feedback of " << renderer()
+                     << " does not write what shaders compute, so the CPU computes all poses, which is slower"
+                     << std::endl;
+    }
+    return !*canWriteFeedback;
 }
 
 /// True if the separate form has fewer draws, and its buffers have room for so many instances.

@@ -34,6 +34,7 @@ public:
         Automatic, ///< the faster one for the levels and entries, see Options::entriesWorthADraw
         Fused,     ///< one pass, one draw per level
         Separate,  ///< mix, local, world: three draws; the world stage multiplies along the ancestors
+        Cpu,       ///< no pass: the CPU twin computes the palettes and uploads them, slower
     };
 
     /// The fastest measured chunk size, by a small margin (tests/benchmark/RESULTS.md).
@@ -42,12 +43,19 @@ public:
     /// The settings of a pipeline, for tests and benchmarks.
     struct Options
     {
-        Form form = Form::Automatic; ///< the division of the stages into passes
+        /// The division of the stages into passes. If transform feedback of the context writes nothing, all forms are
+        /// Form::Cpu, as initially with OSGGPUANIMATION_POSES=cpu in the environment.
+        Form form = Form::Automatic;
         /// How many palette entries of 8 levels take as much longer in the separate form as one draw does in the fused
         /// form. The initial value is that of a card or of a software renderer.
         std::size_t entriesWorthADraw = 0;
-        /// The largest number of texels of a buffer texture: at most GL_MAX_TEXTURE_BUFFER_SIZE, the initial value.
+        /// The largest number of texels of a buffer texture: at most GL_MAX_TEXTURE_BUFFER_SIZE, the initial value, or
+        /// OSGGPUANIMATION_MAX_TEXELS in the environment if that is less.
         std::size_t maxTexels = 0;
+        /// False: draws for entries beyond the first rebind attributes, as OpenGL 3.3 needs. True, the initial value of
+        /// OpenGL 4.2 or ARB_base_instance, only there.
+        bool usesBaseInstances = false;
+        bool drawsTriangles = true; ///< false: the fused form draws points
         /// The largest number of instances per draw, above 0; it limits the scratch buffer. A chunk has fewer
         /// instances if a buffer texture cannot hold them.
         std::size_t chunkSize = usualChunkSize;

@@ -18,8 +18,10 @@
 #include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
 #include <osgUtil/CullVisitor>
+#include <osgUtil/UpdateVisitor>
 
 #include <algorithm>
+#include <typeinfo>
 
 namespace osgGpuAnimation
 {
@@ -54,6 +56,13 @@ bool showsMeshesAlone(const osg::Node& node)
     for (unsigned int child = 0; child < group->getNumChildren(); ++child)
         if (!showsMeshesAlone(*group->getChild(child))) return false;
     return true;
+}
+
+/// True if the object's class derives nothing that could do otherwise.
+template <typename Class, typename Object>
+bool isPlain(const Object& object)
+{
+    return typeid(object) == typeid(Class);
 }
 
 /// Those that others wear: of levels of detail in the file the first.
@@ -315,9 +324,30 @@ void AnimatedCharacter::acceptPosed(osg::PrimitiveFunctor& functor)
 
 void AnimatedCharacter::accept(osg::NodeVisitor& visitor)
 {
-    const std::optional<double> time = updateTimeOf(visitor);
-    if (time && visitor.validNodeMask(*this)) update(*time);
+    if (const std::optional<double> time = updateTimeOf(visitor); time && visitor.validNodeMask(*this))
+    {
+        update(*time);
+        // This node itself requires one.
+        const bool isLeaf = !getUpdateCallback() && getNumChildrenRequiringUpdateTraversal() == 1;
+        if (isLeaf && isPlain<AnimatedCharacter>(*this) && isPlain<osgUtil::UpdateVisitor>(visitor)) return;
+    }
+    else if (osgUtil::CullVisitor* cull = visitor.asCullVisitor(); cull && cullTogether(*cull))
+        return;
     osg::MatrixTransform::accept(visitor);
+}
+
+/// As the traversal of a CullVisitor for a character that is drawn together with others. False, without an effect: the
+/// visitor must traverse it.
+bool AnimatedCharacter::cullTogether(osgUtil::CullVisitor& visitor)
+{
+    if (!_isDrawnTogether || getCullCallback() || getStateSet() || getReferenceFrame() != RELATIVE_RF) return false;
+    if (!visitor.validNodeMask(*this) || !isPlain<AnimatedCharacter>(*this) ||
+        !isPlain<osgUtil::CullVisitor>(visitor) || getNumChildren() == 0 || getAnimationSet().paletteSize() == 0)
+        return false;
+    if (visitor.isCulled(*this)) return true;
+    const DepthPass pass(visitor);
+    const ViewLightsScope lights(visitor);
+    return PoseStage::drawFromAbove(visitor, drawn(), getMatrix());
 }
 
 void AnimatedCharacter::traverse(osg::NodeVisitor& visitor)
@@ -331,12 +361,17 @@ void AnimatedCharacter::traverse(osg::NodeVisitor& visitor)
             traverseWithBounds(*this, now, visitor);
         else if (!keepFlattenedPlace(*this, visitor))
             osg::MatrixTransform::traverse(visitor);
-        prepareFirstDraw(visitor, {*this, *_controller, _axes->rootMatrix, _meshes.getPixelError(), _isDrawnTogether});
+        prepareFirstDraw(visitor, drawn());
         return;
     }
     const DepthPass pass(*cullVisitor);
     const ViewLightsScope lights(*cullVisitor);
-    PoseStage::draw(*cullVisitor, {*this, *_controller, _axes->rootMatrix, _meshes.getPixelError(), _isDrawnTogether});
+    PoseStage::draw(*cullVisitor, drawn());
+}
+
+DrawnCharacter AnimatedCharacter::drawn()
+{
+    return {*this, *_controller, _axes->rootMatrix, _meshes.getPixelError(), _isDrawnTogether};
 }
 
 osg::BoundingBox AnimatedCharacter::boundsOf(const std::vector<PlayedClip>& played) const

@@ -24,6 +24,7 @@ namespace osgGpuAnimation
 {
 
 class MixBounds;
+struct DrawnCharacter;
 class PosedMeshes;
 class Wardrobe;
 class WorldTargets;
@@ -54,7 +55,8 @@ public:
     /// independent.
     AnimatedCharacter(const AnimatedCharacter& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
     META_Object(osgGpuAnimation, AnimatedCharacter)
-    /// During update: calls update() with the frame stamp's simulation time, then the update callbacks.
+    /// During update: calls update() with the frame stamp's simulation time, then the update callbacks. During cull: a
+    /// character that is drawn together with others needs no traversal.
     void accept(osg::NodeVisitor& visitor) override;
 
     /// The set, which copies share. Valid until setAnimationSet(): to keep it, hold getController().sharedSet().
@@ -173,6 +175,8 @@ private:
         AffineMatrix rootMatrix; ///< the same as floats
     };
 
+    DrawnCharacter drawn();
+    bool cullTogether(osgUtil::CullVisitor& visitor);
     bool wears(const std::string& identifier) const;
     void useOutfit(const std::shared_ptr<const AnimationSet>& set);
     osg::BoundingBox clipBoundsInFile(int clip) const;

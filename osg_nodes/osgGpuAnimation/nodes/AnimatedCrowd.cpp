@@ -380,11 +380,11 @@ void AnimatedCrowd::traverse(osg::NodeVisitor& visitor)
 void AnimatedCrowd::prepareSharedPoses()
 {
     if (_meshes._outfits && _meshes._outfits->update(*this)) _meshes.showLevels();
-    if (_sharedPoses) _sharedPoses->forgetUnused();
     _meshes.updateLevels();
     const bool isOn = _meshes.getPixelError() > 0.0f && getAnimationSet().paletteSize() > 0;
     if (isOn && (!_sharedPoses || !_sharedPoses->isOf(_meshes.drawn()))) // kept for the next pixel error
-        _sharedPoses = std::make_unique<SharedPoses>(_meshes.drawn(), getAnimationSet());
+        _sharedPoses = std::make_unique<SharedPoses>(_meshes.drawn(), getSharedAnimationSet());
+    if (_sharedPoses) _sharedPoses->update(isOn && !_meshes._task); // levels take more time than they
 }
 
 void AnimatedCrowd::releaseGLObjects(osg::State* state) const

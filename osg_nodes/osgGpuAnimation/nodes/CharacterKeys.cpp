@@ -9,7 +9,6 @@
 #include <osgViewer/View>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iostream>
 #include <mutex>

@@ -7,6 +7,7 @@
 #include <osg/Group>
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <utility>
@@ -32,7 +33,8 @@ public:
     CrowdOutfits& operator=(const CrowdOutfits&) = delete;
 
     /// Errors, which change nothing: outfit is null or was added before; it names a part, material, variant or joint
-    /// that the crowd lacks, a colour beyond [0, 1] or an empty picture; the crowd has 256 outfits.
+    /// that the crowd lacks, a colour beyond [0, 1], a scale beyond [0.1, 10] or an empty picture; the crowd has 256
+    /// outfits.
     Result<void> add(Outfit* outfit);
     /// The instances of the outfit get another one, or, with by == outfit, what has changed in it. Errors: those of
     /// add(); the crowd has no such outfit.
@@ -50,6 +52,8 @@ private:
         : _crowd(crowd), _instances(instances), _meshes(meshes), _changed(std::move(changed))
     {
     }
+    std::uint16_t numberOf(const Outfit* outfit) const; ///< 0: there is no such outfit
+    void show(const Outfit* outfit);
     Result<void> wear(std::size_t instance, const Outfit* outfit);
     const Outfit* wornBy(std::size_t instance) const; ///< null: none
 

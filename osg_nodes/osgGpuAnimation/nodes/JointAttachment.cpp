@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 
+#include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
+#include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
+
 #include <osg/NodeVisitor>
 #include <osg/Notify>
 
@@ -23,11 +26,12 @@ std::string nameOfJoint(const std::string& name, int joint)
 /// The character or crowd whose joint an attachment follows; both null: none.
 struct JointAttachment::Host
 {
-    /// The nearest one above the end of the path.
-    explicit Host(const osg::NodePath& path)
+    /// The nearest one above the end of the path, which may be the attachment.
+    Host(const osg::NodePath& path, const JointAttachment& attachment)
     {
         for (auto node = path.rbegin(); node != path.rend() && !isFound(); ++node)
         {
+            if (*node == &attachment) continue; // a failing cast costs a tenth of the attachment
             character = dynamic_cast<const AnimatedCharacter*>(*node);
             crowd = dynamic_cast<const AnimatedCrowd*>(*node);
         }
@@ -76,6 +80,7 @@ void JointAttachment::setJoint(const std::string& name)
     _jointName = name;
     _joint = -1;
     _resolvedSet.reset();
+    _crowd.reset();
     _hasWarned = false;
 }
 
@@ -83,6 +88,18 @@ void JointAttachment::setJoint(int joint)
 {
     setJoint(std::string());
     _joint = joint;
+}
+
+void JointAttachment::setOffset(const osg::Matrixd& offset)
+{
+    _offset = offset;
+    _crowd.reset();
+}
+
+void JointAttachment::setInstance(std::optional<std::uint64_t> instance)
+{
+    _instance = instance;
+    _crowd.reset();
 }
 
 int JointAttachment::jointIn(const AnimationSet& set) const
@@ -105,8 +122,19 @@ void JointAttachment::resolve(const Host& host)
              << "; it stays at the character's origin" << std::endl;
 }
 
+/// True if the matrix is the one in that host: cull would else evaluate the joint once more.
+bool JointAttachment::isUpToDate(const Host& host) const
+{
+    if (!host.crowd || !_instance) return false;
+    const CrowdInstances& instances = CrowdDetail::instances(*host.crowd);
+    const std::size_t index = instances.indexOf(*_instance);
+    return instances.identity() == _crowd && instances.motions() == _motions && index != CrowdInstances::none &&
+           !instances.hasController(index);
+}
+
 osg::Matrixd JointAttachment::matrixIn(const Host& host) const
 {
+    if (isUpToDate(host)) return getMatrix();
     const auto joint = static_cast<std::size_t>(jointIn(*host.set()));
     if (host.character)
     {
@@ -123,17 +151,23 @@ osg::Matrixd JointAttachment::matrixIn(const Host& host) const
 void JointAttachment::traverse(osg::NodeVisitor& visitor)
 {
     if (visitor.getVisitorType() == osg::NodeVisitor::UPDATE_VISITOR)
-        if (const Host host(visitor.getNodePath()); host.isFound())
+        if (const Host host(visitor.getNodePath(), *this); host.isFound())
         {
             resolve(host);
             setMatrix(matrixIn(host));
+            _crowd.reset();
+            if (host.crowd)
+            {
+                _crowd = CrowdDetail::instances(*host.crowd).identity();
+                _motions = CrowdDetail::instances(*host.crowd).motions();
+            }
         }
     osg::MatrixTransform::traverse(visitor);
 }
 
 bool JointAttachment::computeLocalToWorldMatrix(osg::Matrix& matrix, osg::NodeVisitor* visitor) const
 {
-    const Host host(visitor ? visitor->getNodePath() : osg::NodePath());
+    const Host host(visitor ? visitor->getNodePath() : osg::NodePath(), *this);
     if (!host.isFound() || getReferenceFrame() != osg::Transform::RELATIVE_RF)
         return osg::MatrixTransform::computeLocalToWorldMatrix(matrix, visitor);
     matrix.preMult(matrixIn(host));
@@ -142,7 +176,7 @@ bool JointAttachment::computeLocalToWorldMatrix(osg::Matrix& matrix, osg::NodeVi
 
 bool JointAttachment::computeWorldToLocalMatrix(osg::Matrix& matrix, osg::NodeVisitor* visitor) const
 {
-    const Host host(visitor ? visitor->getNodePath() : osg::NodePath());
+    const Host host(visitor ? visitor->getNodePath() : osg::NodePath(), *this);
     if (!host.isFound() || getReferenceFrame() != osg::Transform::RELATIVE_RF)
         return osg::MatrixTransform::computeWorldToLocalMatrix(matrix, visitor);
     matrix.postMult(osg::Matrixd::inverse(matrixIn(host)));
@@ -159,7 +193,7 @@ Result<osg::ref_ptr<osg::MatrixTransform>> JointAttachment::detach(osg::Group& n
     const osg::ref_ptr<JointAttachment> alive = this;
     osg::NodePath above = paths.front();
     above.pop_back();
-    const Host host(above);
+    const Host host(above, *this);
     const osg::Matrixd own = host.isFound() ? matrixIn(host) : osg::Matrixd(getMatrix());
     const osg::Matrixd parentToWorld = osg::computeLocalToWorld(newParent.getParentalNodePaths().front());
     const osg::ref_ptr<osg::MatrixTransform> placed =

@@ -47,11 +47,11 @@ public:
     int getJoint() const { return _joint; }                        ///< -1: selected by name
 
     /// Sets the place of the children relative to the joint: from their space to the joint's. Default: the identity.
-    void setOffset(const osg::Matrixd& offset) { _offset = offset; }
+    void setOffset(const osg::Matrixd& offset);
     const osg::Matrixd& getOffset() const { return _offset; } ///< see setOffset()
 
     /// Selects the instance of the crowd above, see AnimatedCrowd::Instance. Empty (the default): none.
-    void setInstance(std::optional<std::uint64_t> instance) { _instance = instance; }
+    void setInstance(std::optional<std::uint64_t> instance);
     std::optional<std::uint64_t> getInstance() const { return _instance; } ///< see setInstance()
 
     /// Moves the children to a new transform below newParent, which shows them at the same place of the world, and
@@ -74,6 +74,7 @@ private:
     struct Host;
 
     osg::Matrixd matrixIn(const Host& host) const;
+    bool isUpToDate(const Host& host) const;
     int jointIn(const AnimationSet& set) const;
     void resolve(const Host& host);
 
@@ -84,6 +85,8 @@ private:
     std::shared_ptr<const AnimationSet> _resolvedSet; ///< the set of the last look-up
     int _resolvedJoint = -1;
     bool _hasWarned = false;
+    std::shared_ptr<const void> _crowd; ///< whose instance the matrix is for; null: for another state or host
+    std::uint64_t _motions = 0;         ///< of that crowd, when the matrix was set
 };
 
 } // namespace osgGpuAnimation

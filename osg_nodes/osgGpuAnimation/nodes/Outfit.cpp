@@ -6,7 +6,7 @@ namespace osgGpuAnimation
 
 Outfit::Outfit(const Outfit& other, const osg::CopyOp& copyop)
     : osg::Object(other, copyop), _visibility(other._visibility), _variant(other._variant), _colors(other._colors),
-      _pictures(other._pictures), _props(other._props)
+      _pictures(other._pictures), _jointScales(other._jointScales), _props(other._props)
 {
     for (auto& [material, picture] : _pictures)
         picture = copyop(picture.get());

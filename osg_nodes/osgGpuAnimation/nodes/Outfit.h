@@ -5,6 +5,7 @@
 #include <osg/Matrixd>
 #include <osg/Node>
 #include <osg/Object>
+#include <osg/Vec3>
 #include <osg/Vec4>
 
 #include <map>
@@ -20,6 +21,7 @@ namespace osgGpuAnimation
 ///     osg::ref_ptr<Outfit> guard = new Outfit;
 ///     guard->setVisible("Hood", false);                                     // a part, by the name of its node
 ///     guard->setColor("Coat", osg::Vec4(0.5, 0.2, 0.2, 1));                 // a material; the skin keeps its colour
+///     guard->setJointScale("Head", osg::Vec3(0.9, 0.9, 0.9));               // proportions of the body
 ///     guard->addProp("Head", osgDB::readRefNodeFile("helmet.glb"));
 ///     if (auto added = crowd->getOutfits().add(guard); !added) std::cerr << added.error().message << "\n";
 ///     crowd->setOutfit(instance, guard);
@@ -69,6 +71,12 @@ public:
     void setPicture(const std::string& material, osg::Image* picture) { _pictures[material] = picture; }
     const std::map<std::string, osg::ref_ptr<osg::Image>>& getPictures() const { return _pictures; } ///< by material
 
+    /// Scales a joint along its own axes, with all joints below it, whatever clips and layers set for its scale. Such
+    /// instances share no poses, see CharacterMeshes::setPixelError(). scale: of its scale at rest; each component in
+    /// [0.1, 10].
+    void setJointScale(const std::string& joint, const osg::Vec3& scale) { _jointScales[joint] = scale; }
+    const std::map<std::string, osg::Vec3>& getJointScales() const { return _jointScales; } ///< by joint
+
     /// Adds the geometries below a node as parts that follow a joint, at the cost of other parts; JointAttachment is
     /// for nodes with callbacks or lights of their own. A prop of several outfits is the same part if joint, node and
     /// matrix are equal. joint: the name of one that moves a mesh of the crowd. toJoint: from the node's space to the
@@ -84,6 +92,7 @@ private:
     std::string _variant;
     std::map<std::string, osg::Vec4> _colors;
     std::map<std::string, osg::ref_ptr<osg::Image>> _pictures;
+    std::map<std::string, osg::Vec3> _jointScales;
     std::vector<Prop> _props;
 };
 

@@ -104,7 +104,8 @@ public:
 private:
     OutfitShare toOutfit(const Json& json, const std::string& where)
     {
-        checkObject(json, where, {"name", "share", "size", "hide", "show", "variant", "colors", "pictures", "props"});
+        checkObject(json, where,
+                    {"name", "share", "size", "hide", "show", "variant", "colors", "pictures", "proportions", "props"});
         OutfitShare made{new Outfit};
         std::string name, variant;
         readText(json, "name", where, name);
@@ -123,6 +124,8 @@ private:
             made.outfit->setColor(color.key(), toColor(color.value(), where + ".colors." + color.key()));
         for (const auto& picture : memberOf(json, "pictures", where, &Json::is_object, "an object").items())
             made.outfit->setPicture(picture.key(), toPicture(picture.value(), where + ".pictures." + picture.key()));
+        for (const auto& joint : memberOf(json, "proportions", where, &Json::is_object, "an object").items())
+            made.outfit->setJointScale(joint.key(), toSize(joint.value(), where + ".proportions." + joint.key()));
         const Json& props = memberOf(json, "props", where, &Json::is_array, "an array");
         for (std::size_t i = 0; i < props.size(); ++i)
             addProp(props[i], where + ".props[" + std::to_string(i) + "]", *made.outfit);

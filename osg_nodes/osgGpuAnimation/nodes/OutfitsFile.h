@@ -35,15 +35,15 @@ struct OutfitReaders
 ///       "outfits": [
 ///         { "name": "pilgrim", "share": 2, "hide": ["Lantern", "Cap"], "colors": { "Coat": "#7a5c3a" } },
 ///         { "name": "child", "size": 0.75, "show": ["Hood"], "variant": "winter",
-///           "pictures": { "Shirt": "stripes.png" },
+///           "pictures": { "Shirt": "stripes.png" }, "proportions": { "Head": 1.2, "Chest": [1.1, 1, 1] },
 ///           "props": [ { "joint": "Head", "file": "hat.glb", "offset": [0, 0.1, 0] } ] }
 ///       ]
 ///     }
 ///
 /// size: a number, or three of width, depth and height: [1.15, 1.1, 0.95] is broader and shorter. hide, show: names of
-/// parts, one or an array. colors: by material, "#rrggbb" as displayed. pictures, and the files of
-/// props: relative to the folder of the file, not above it. offset: of the prop's origin, in the joint's space; default
-/// 0. Missing members have the defaults of Outfit and OutfitShare.
+/// parts, one or an array. colors: by material, "#rrggbb" as displayed. proportions: scales of joints, like size.
+/// pictures, and the files of props: relative to the folder of the file, not above it. offset: of the prop's origin, in
+/// the joint's space; default 0. Missing members have the defaults of Outfit and OutfitShare.
 ///
 /// Errors start with the name of the file and name the member: invalid JSON; more than 64 KiB or 256 nested levels; a
 /// member of a wrong type or an unknown name; a duplicate or missing member; a file that cannot be read; no outfits; a

@@ -3,8 +3,6 @@
 
 #include <osgGpuAnimation/nodes/files/JsonText.h>
 
-#include <utility>
-
 namespace osgGpuAnimation
 {
 

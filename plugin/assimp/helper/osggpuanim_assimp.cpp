@@ -4,7 +4,6 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <new>
 
 #include <sys/prctl.h>
 #include <sys/resource.h>

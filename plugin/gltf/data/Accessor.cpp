@@ -123,27 +123,16 @@ std::vector<Out> read(const tinygltf::Model& model, int index)
            "only accessors of the document are read");
     const tinygltf::Accessor& accessor = elementOf(model.accessors, index);
     std::vector<Out> numbers(accessor.count * componentCount(accessor)); // no buffer view: zeros (section 3.6.2.3)
-    switch (accessor.componentType)
-    {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-        readAll<std::int8_t>(model, accessor, numbers.data());
-        break;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-        readAll<std::uint8_t>(model, accessor, numbers.data());
-        break;
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-        readAll<std::int16_t>(model, accessor, numbers.data());
-        break;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-        readAll<std::uint16_t>(model, accessor, numbers.data());
-        break;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-        readAll<std::uint32_t>(model, accessor, numbers.data());
-        break;
-    default:
-        readAll<float>(model, accessor, numbers.data());
-        break;
-    }
+    using Reader = void (*)(const tinygltf::Model&, const tinygltf::Accessor&, Out*);
+    // By component type; glTF does not know the fifth, GL_INT.
+    constexpr Reader readers[] = {readAll<std::int8_t, Out>,
+                                  readAll<std::uint8_t, Out>,
+                                  readAll<std::int16_t, Out>,
+                                  readAll<std::uint16_t, Out>,
+                                  nullptr,
+                                  readAll<std::uint32_t, Out>,
+                                  readAll<float, Out>};
+    readers[accessor.componentType - TINYGLTF_COMPONENT_TYPE_BYTE](model, accessor, numbers.data());
     return numbers;
 }
 

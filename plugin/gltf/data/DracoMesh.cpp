@@ -74,21 +74,16 @@ bool readValues(const draco::Mesh& mesh, const draco::PointAttribute& attribute,
 
 bool readValues(const draco::Mesh& mesh, const draco::PointAttribute& attribute, int componentType, Bytes& out)
 {
-    switch (componentType)
-    {
-    case 5120:
-        return readValues<std::int8_t>(mesh, attribute, out);
-    case 5121:
-        return readValues<std::uint8_t>(mesh, attribute, out);
-    case 5122:
-        return readValues<std::int16_t>(mesh, attribute, out);
-    case 5123:
-        return readValues<std::uint16_t>(mesh, attribute, out);
-    case 5125:
-        return readValues<std::uint32_t>(mesh, attribute, out);
-    default:
-        return readValues<float>(mesh, attribute, out);
-    }
+    using Reader = bool (*)(const draco::Mesh&, const draco::PointAttribute&, Bytes&);
+    // From GL_BYTE on; glTF does not know the fifth, GL_INT.
+    constexpr Reader readers[] = {readValues<std::int8_t>,
+                                  readValues<std::uint8_t>,
+                                  readValues<std::int16_t>,
+                                  readValues<std::uint16_t>,
+                                  nullptr,
+                                  readValues<std::uint32_t>,
+                                  readValues<float>};
+    return readers[componentType - 5120](mesh, attribute, out);
 }
 
 } // namespace

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <cstdint>
 #include <system_error>
 #include <utility>
@@ -34,14 +35,6 @@ struct DataUriParts
     }
 };
 
-int hexDigit(char c)
-{
-    if (c >= '0' && c <= '9') return c - '0';
-    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-    return -1;
-}
-
 /// Out: a string or bytes, of which no more than `max` are kept.
 template <typename Out>
 Result<Out> decodePercent(std::string_view text, std::size_t max)
@@ -55,10 +48,12 @@ Result<Out> decodePercent(std::string_view text, std::size_t max)
             if (out.size() < max) out.push_back(static_cast<typename Out::value_type>(text[i]));
             continue;
         }
-        const int high = i + 1 < text.size() ? hexDigit(text[i + 1]) : -1;
-        const int low = i + 2 < text.size() ? hexDigit(text[i + 2]) : -1;
-        if (high < 0 || low < 0) return unexpected("two hexadecimal digits after %", quoted(text.substr(i, 3)));
-        if (out.size() < max) out.push_back(static_cast<typename Out::value_type>(high * 16 + low));
+        std::uint8_t byte = 0;
+        const std::string_view digits = text.substr(i + 1, 2);
+        const char* const end = digits.data() + digits.size();
+        if (digits.size() < 2 || std::from_chars(digits.data(), end, byte, 16).ptr != end)
+            return unexpected("two hexadecimal digits after %", quoted(text.substr(i, 3)));
+        if (out.size() < max) out.push_back(static_cast<typename Out::value_type>(byte));
         i += 2;
     }
     return out;

@@ -6,8 +6,6 @@
 #include "gltf/file/Elements.h"
 #include "gltf/file/Report.h"
 
-#include <osgGpuAnimation/nodes/viewing/StartView.h>
-
 #include <osg/Math>
 #include <osg/ValueObject>
 

@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <cassert>
 #include <cstring>
-#include <random>
+#include <numeric>
+#include <utility>
 
 namespace osgGpuAnimation::gltf
 {
@@ -22,57 +23,27 @@ const unsigned char* at(const VertexStream& stream, std::size_t vertex)
     return static_cast<const unsigned char*>(stream.data) + vertex * stream.bytesAVertex;
 }
 
-/// A hash of each vertex: the sum of its words, each times a random factor of its place. An attacker who does not know
-/// the factors cannot construct vertices with equal sums.
-std::vector<std::uint64_t> hashes(const std::vector<VertexStream>& streams, std::size_t vertexCount)
+/// Below, equal to or above 0, as the vertex is in some total order of all.
+int compare(const std::vector<VertexStream>& streams, std::uint32_t vertex, std::uint32_t other)
 {
-    std::random_device device;
-    std::seed_seq seed{device(), device(), device(), device()};
-    std::mt19937_64 random(seed);
-    std::vector<std::uint64_t> sums(vertexCount);
     for (const VertexStream& stream : streams)
-    {
-        assert(stream.bytesAVertex % 4 == 0 && "vertices are made of words");
-        for (std::size_t place = 0; place < stream.bytesAVertex; place += 4)
-        {
-            const std::uint64_t factor = random() | 1;
-            for (std::size_t vertex = 0; vertex < vertexCount; ++vertex)
-            {
-                std::uint32_t word;
-                std::memcpy(&word, at(stream, vertex) + place, sizeof(word));
-                sums[vertex] += factor * word;
-            }
-        }
-    }
-    return sums;
-}
-
-bool areEqual(const std::vector<VertexStream>& streams, std::size_t a, std::size_t b)
-{
-    return std::all_of(streams.begin(), streams.end(),
-                       [=](const VertexStream& stream)
-                       { return std::memcmp(at(stream, a), at(stream, b), stream.bytesAVertex) == 0; });
+        if (const int order = std::memcmp(at(stream, vertex), at(stream, other), stream.bytesAVertex)) return order;
+    return 0;
 }
 
 /// For each vertex the first vertex that equals it.
 std::vector<std::uint32_t> firstEqual(const std::vector<VertexStream>& streams, std::size_t vertexCount)
 {
-    const std::vector<std::uint64_t> sums = hashes(streams, vertexCount);
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> sorted(vertexCount);
-    for (std::size_t vertex = 0; vertex < vertexCount; ++vertex)
-        sorted[vertex] = {sums[vertex], static_cast<std::uint32_t>(vertex)};
-    std::sort(sorted.begin(), sorted.end());
-    std::vector<std::uint32_t> first(vertexCount);
-    std::vector<std::uint32_t> different; // vertices of one hash: nearly always a single one
+    std::vector<std::uint32_t> sorted(vertexCount), first(vertexCount);
+    std::iota(sorted.begin(), sorted.end(), 0u);
+    std::sort(sorted.begin(), sorted.end(),
+              [&](std::uint32_t a, std::uint32_t b)
+              {
+                  const int order = compare(streams, a, b);
+                  return order != 0 ? order < 0 : a < b;
+              });
     for (std::size_t i = 0; i < vertexCount; ++i)
-    {
-        const std::uint32_t vertex = sorted[i].second;
-        if (i == 0 || sorted[i].first != sorted[i - 1].first) different.clear();
-        const auto equal = std::find_if(different.begin(), different.end(),
-                                        [&](std::uint32_t other) { return areEqual(streams, vertex, other); });
-        first[vertex] = equal != different.end() ? *equal : vertex;
-        if (equal == different.end()) different.push_back(vertex);
-    }
+        first[sorted[i]] = i > 0 && compare(streams, sorted[i - 1], sorted[i]) == 0 ? first[sorted[i - 1]] : sorted[i];
     return first;
 }
 

@@ -28,7 +28,7 @@ osg::ref_ptr<osg::Vec3Array> smoothNormals(const osg::Vec3Array& positions, cons
 struct VertexStream
 {
     const void* data = nullptr;
-    std::size_t bytesAVertex = 0; ///< a multiple of 4
+    std::size_t bytesAVertex = 0;
 };
 
 struct WeldedVertices
@@ -37,8 +37,8 @@ struct WeldedVertices
     std::size_t count = 0;               ///< welded vertices
 };
 
-/// Welds the vertices that are equal in all streams, byte by byte. Its hash is randomly seeded to prevent collision
-/// attacks: with meshoptimizer's fixed hash a file can make the time grow by the square of the vertices.
+/// Welds the vertices that are equal in all streams, byte by byte. It sorts them: with meshoptimizer's fixed hash a
+/// file can make the time grow by the square of the vertices.
 WeldedVertices weldVertices(const std::vector<VertexStream>& streams, std::size_t vertexCount);
 
 } // namespace osgGpuAnimation::gltf

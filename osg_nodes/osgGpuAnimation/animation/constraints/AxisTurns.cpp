@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/constraints/AxisTurns.h>
 
-#include <osgGpuAnimation/math/JointTransform.h>
-
 #include <glm/geometric.hpp>
 
 #include <cmath>

@@ -65,6 +65,7 @@ public:
     std::uint32_t pointOf(std::uint32_t vertex) const { return _pointOf[vertex]; }
     /// The vertices of the point that original triangles use.
     const std::vector<std::uint32_t>& verticesOf(std::uint32_t point) const { return _verticesOf[point]; }
+    /// True if edges between the points may collapse: triangles have no corners in two pieces. Without pieces: always.
     bool isOfOnePiece(std::uint32_t point, std::uint32_t other) const
     {
         return _surface.pieces.empty() ||

@@ -9,6 +9,7 @@
 #include <osgUtil/Statistics>
 
 #include <algorithm>
+#include <cstdint>
 
 namespace osgGpuAnimation
 {
@@ -66,13 +67,18 @@ bool canBeDrawnTogether(const SkinnedGeometry& mesh)
            isOrderedByState(mesh.getStateSet()) && !InstanceRuns::isRefusedBy(mesh);
 }
 
-bool CharacterDraws::Group::holds(const Group& other) const
+void CharacterDraws::begin(DrawnInstances* counted)
 {
-    return bin == other.bin && projection == other.projection && traversalMask == other.traversalMask &&
-           set == other.set && slot == other.slot && level == other.level && meshes == other.meshes;
+    _looks.clear();
+    _looksByHash.clear();
+    _lastLook = nullptr;
+    _groups.clear();
+    _lastGroup = nullptr;
+    _lastScale.reset();
+    _counted = counted;
 }
 
-bool CharacterDraws::LodInput::isOf(const osg::Group& node) const
+bool CharacterDraws::Look::isOf(const osg::Group& node) const
 {
     if (children.size() != node.getNumChildren()) return false;
     for (unsigned int i = 0; i < node.getNumChildren(); ++i)
@@ -80,18 +86,62 @@ bool CharacterDraws::LodInput::isOf(const osg::Group& node) const
     return true;
 }
 
+CharacterDraws::Look& CharacterDraws::lookOf(const osgUtil::CullVisitor& visitor, const DrawnCharacter& character)
+{
+    const auto isIts = [&](const Look& look)
+    {
+        return look.set == &character.controller.set() && look.traversalMask == visitor.getTraversalMask() &&
+               look.isOf(character.node);
+    };
+    if (_lastLook && isIts(*_lastLook)) return *_lastLook;
+    std::size_t hash = character.node.getNumChildren();
+    for (unsigned int i = 0; i < character.node.getNumChildren(); ++i)
+        hash = (hash ^ reinterpret_cast<std::uintptr_t>(character.node.getChild(i)) >> 4) *
+               std::size_t(0x9E3779B97F4A7C15);
+    const auto [begin, end] = _looksByHash.equal_range(hash);
+    const auto known = std::find_if(begin, end, [&](const auto& each) { return isIts(*each.second); });
+    if (known != end) return *(_lastLook = known->second);
+    _looks.push_back(std::make_unique<Look>(newLook(visitor, character)));
+    _lastLook = _looks.back().get();
+    _looksByHash.emplace(hash, _lastLook);
+    return *_lastLook;
+}
+
+CharacterDraws::Look CharacterDraws::newLook(const osgUtil::CullVisitor& visitor, const DrawnCharacter& character) const
+{
+    Look look{_looks.size(), &character.controller.set(), visitor.getTraversalMask(), {}};
+    for (unsigned int i = 0; i < character.node.getNumChildren(); ++i)
+    {
+        osg::Node* child = character.node.getChild(i);
+        look.children.push_back(child);
+        SkinnedGeometry* mesh = asShared(child);
+        if (!mesh)
+            look.others.push_back(child);
+        else if (visitor.validNodeMask(*mesh))
+            look.shared.push_back(mesh);
+    }
+    forEachMesh(character.node, [&](const SkinnedGeometry& mesh) { look.box.expandBy(mesh.getBoundingBox()); });
+    return look;
+}
+
 void CharacterDraws::draw(osgUtil::CullVisitor& visitor, LodView& view, const DrawnCharacter& character,
                           PoseFrame& frame, SubmittedPose pose)
 {
-    const int level = levelOf(visitor, view, character);
-    std::vector<osg::Node*> others; // not a member: other characters may be below these nodes
-    const bool isTogether = character.isDrawnTogether && canDrawTogether(visitor) &&
-                            drawTogether(visitor, character, frame, pose, level, others);
+    Look& look = lookOf(visitor, character);
+    const int level = levelOf(visitor, view, character, look, osg::Matrixd());
+    Group* group = nullptr;
+    if (character.isDrawnTogether && !look.shared.empty() && canDrawTogether(visitor))
+        group = &groupOf(visitor, character.controller.set(), pose.slot, level);
+    std::vector<osg::Node*> alone; // not a member: other characters may be below these nodes
+    for (unsigned int i = 0; i < character.node.getNumChildren(); ++i)
+        if (!group || !group->knows(character.node.getChild(i))) alone.push_back(character.node.getChild(i));
+    const bool isVisible = !character.node.isCullingActive() || !visitor.isCulled(look.box);
+    if (group && isVisible) add(visitor, *group, look, frame, *visitor.getModelViewMatrix(), pose.instance);
+    for (const SkinnedGeometry* mesh : look.shared)
+        if (group) group->bindings.emplace(mesh, nullptr);
     osg::StateSet* state = nullptr;
-    const auto count = isTogether ? static_cast<unsigned int>(others.size()) : character.node.getNumChildren();
-    for (unsigned int i = 0; i < count; ++i)
+    for (osg::Node* child : alone)
     {
-        osg::Node* child = isTogether ? others[i] : character.node.getChild(i);
         if (!state)
             visitor.pushStateSet(state = frame.stateOf(character.node, character.controller.set(), pose, level));
         child->accept(visitor);
@@ -99,83 +149,103 @@ void CharacterDraws::draw(osgUtil::CullVisitor& visitor, LodView& view, const Dr
     if (state) visitor.popStateSet();
 }
 
-int CharacterDraws::levelOf(osgUtil::CullVisitor& visitor, LodView& view, const DrawnCharacter& character)
+bool CharacterDraws::drawFromAbove(osgUtil::CullVisitor& visitor, LodView& view, const DrawnCharacter& character,
+                                   const osg::Matrixd& toParent, PoseFrame& frame)
 {
-    if (!(character.pixelError > 0.0f)) return LodLevels::allTriangles;
-    const LodInput& lod = lodOf(character);
-    if (!lod.box.valid()) return LodLevels::allTriangles;
-    const osg::Vec3 centre = lod.box.center();
-    return LodScale(visitor, view, character.pixelError, lod.range)
-        .level(glm::vec3(centre.x(), centre.y(), centre.z()), lod.box.radius(), character.rootMatrix);
-}
-
-// Characters of one set usually share their meshes; otherwise the range is computed again for each character.
-const CharacterDraws::LodInput& CharacterDraws::lodOf(const DrawnCharacter& character)
-{
-    LodInput& lod = _lods[&character.controller.set()];
-    if (lod.isOf(character.node)) return lod;
-    lod = {{}, LodRange(character.node, character.controller.set()), {}};
-    for (unsigned int i = 0; i < character.node.getNumChildren(); ++i)
-        lod.children.push_back(character.node.getChild(i));
-    forEachMesh(character.node, [&](const SkinnedGeometry& mesh) { lod.box.expandBy(mesh.getBoundingBox()); });
-    return lod;
-}
-
-// True: the meshes are part of a group's instanced draw. False: the caller draws all children normally.
-bool CharacterDraws::drawTogether(osgUtil::CullVisitor& visitor, const DrawnCharacter& character, PoseFrame& frame,
-                                  SubmittedPose pose, int level, std::vector<osg::Node*>& outOthers)
-{
-    _candidate.bin = visitor.getCurrentRenderBin();
-    _candidate.projection = visitor.getProjectionMatrix();
-    _candidate.traversalMask = visitor.getTraversalMask();
-    _candidate.set = &character.controller.set();
-    _candidate.slot = pose.slot;
-    _candidate.level = level;
-    _candidate.meshes.clear();
-    for (unsigned int i = 0; i < character.node.getNumChildren(); ++i)
-    {
-        SkinnedGeometry* mesh = asShared(character.node.getChild(i));
-        if (!mesh)
-            outOthers.push_back(character.node.getChild(i));
-        else if (visitor.validNodeMask(*mesh))
-            _candidate.meshes.push_back(mesh);
-    }
-    if (_candidate.meshes.empty()) return false;
-    std::vector<Group>& groups = _groups[visitor.getCurrentStateGraph()];
-    const auto group =
-        std::find_if(groups.begin(), groups.end(), [&](const Group& known) { return known.holds(_candidate); });
-    if (group == groups.end())
-    {
-        groups.push_back(_candidate);
-        for (const SkinnedGeometry* mesh : _candidate.meshes)
-            groups.back().box.expandBy(mesh->getBoundingBox());
-        return false;
-    }
-
-    // The same tests as CullVisitor::apply(Drawable&).
-    const osg::RefMatrix& toEye = *visitor.getModelViewMatrix();
-    if (character.node.isCullingActive() && visitor.isCulled(group->box)) return true;
-    const bool hasNearFar = visitor.getComputeNearFarMode() != osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR;
-    if (hasNearFar && !visitor.updateCalculatedNearFar(toEye, group->box)) return true;
-    const AffineMatrix placement = toAffine(toEye);
-    if (!placement.isFinite()) return true;
-    if (!group->together) open(visitor, *group, frame, visitor.getDistanceFromEyePoint(group->box.center(), false));
-    group->together->add({placement, static_cast<float>(pose.instance)});
+    Look& look = lookOf(visitor, character);
+    if (look.shared.empty() || !look.others.empty() || !canDrawTogether(visitor)) return false;
+    const int level = levelOf(visitor, view, character, look, toParent);
+    const SubmittedPose pose = frame.submit(character.node, character.controller, character.rootMatrix);
+    Group& group = groupOf(visitor, character.controller.set(), pose.slot, level);
+    const auto isKnown = [&](const SkinnedGeometry* mesh) { return group.knows(mesh); };
+    if (!group.isOpen(look) && !std::all_of(look.shared.begin(), look.shared.end(), isKnown)) return false;
+    add(visitor, group, look, frame, toParent * *visitor.getModelViewMatrix(), pose.instance);
     return true;
 }
 
-void CharacterDraws::open(osgUtil::CullVisitor& visitor, Group& group, PoseFrame& frame, float depth)
+/// toVisitor: from the character's space to the visitor's present one.
+int CharacterDraws::levelOf(osgUtil::CullVisitor& visitor, LodView& view, const DrawnCharacter& character, Look& look,
+                            const osg::Matrixd& toVisitor)
 {
-    const DrawState placed = frame.instancedState(*group.set, group.slot, group.level);
-    group.together = placed.binding;
+    if (!(character.pixelError > 0.0f) || !look.box.valid()) return LodLevels::allTriangles;
+    if (!look.range) look.range = LodRange(character.node, character.controller.set());
+    const osg::RefMatrix* toEye = visitor.getModelViewMatrix();
+    if (!_lastScale || _lastScale->toEye != toEye || _lastScale->look != &look ||
+        _lastScale->pixelError != character.pixelError)
+        _lastScale = {toEye, &look, character.pixelError, LodScale(visitor, view, character.pixelError, *look.range)};
+    const osg::Vec3d centre = osg::Vec3d(look.box.center()) * toVisitor;
+    const float scale = maxScale(toAffine(toVisitor));
+    const LodScale& lod = _lastScale->scale;
+    return lod.levelWithin(lod.allowedError(glm::vec3(centre.x(), centre.y(), centre.z()), look.box.radius() * scale,
+                                            scale * maxScale(character.rootMatrix)));
+}
+
+bool CharacterDraws::Group::isSame(const Group& other) const
+{
+    return state == other.state && bin == other.bin && projection == other.projection && set == other.set &&
+           slot == other.slot && level == other.level;
+}
+
+CharacterDraws::Group& CharacterDraws::groupOf(osgUtil::CullVisitor& visitor, const AnimationSet& set, std::size_t slot,
+                                               int level)
+{
+    const Group sought{visitor.getCurrentStateGraph(),
+                       visitor.getCurrentRenderBin(),
+                       visitor.getProjectionMatrix(),
+                       &set,
+                       slot,
+                       level};
+    if (_lastGroup && _lastGroup->isSame(sought)) return *_lastGroup;
+    auto known = std::find_if(_groups.begin(), _groups.end(),
+                              [&](const std::unique_ptr<Group>& group) { return group->isSame(sought); });
+    if (known == _groups.end()) known = _groups.insert(known, std::make_unique<Group>(sought));
+    return *(_lastGroup = known->get());
+}
+
+/// Adds an instance, unless it is behind the near plane or nowhere: the tests of CullVisitor::apply(Drawable&).
+void CharacterDraws::add(osgUtil::CullVisitor& visitor, Group& group, const Look& look, PoseFrame& frame,
+                         const osg::Matrixd& toEye, std::size_t instance)
+{
+    const AffineMatrix placement = toAffine(toEye);
+    if (!placement.isFinite()) return;
+    const bool hasNearFar = visitor.getComputeNearFarMode() != osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR;
+    if (hasNearFar && !visitor.updateCalculatedNearFar(toEye, look.box)) return;
+    std::shared_ptr<std::vector<InstanceTransform>> instances;
+    if (group.isOpen(look))
+        instances = group.instances[look.number];
+    else
+        instances = open(visitor, group, look, frame, static_cast<float>(-(osg::Vec3d(look.box.center()) * toEye).z()));
+    instances->push_back({placement, static_cast<float>(instance)});
+}
+
+/// Adds a list of instances to the draws of the look's meshes that the group knows. It serves later ones, too, if those
+/// are all.
+std::shared_ptr<std::vector<InstanceTransform>> CharacterDraws::open(osgUtil::CullVisitor& visitor, Group& group,
+                                                                     const Look& look, PoseFrame& frame, float depth)
+{
+    const auto instances = std::make_shared<std::vector<InstanceTransform>>();
     const osg::ref_ptr<osg::RefMatrix> eye = new osg::RefMatrix;
-    visitor.pushStateSet(placed.stateSet);
-    for (SkinnedGeometry* mesh : group.meshes)
+    bool isComplete = true;
+    for (SkinnedGeometry* mesh : look.shared)
     {
-        if (_counted) _counted->add(*mesh, *placed.binding);
-        mesh->addTo(visitor, eye.get(), depth);
+        const auto known = group.bindings.find(mesh);
+        isComplete = isComplete && known != group.bindings.end();
+        if (known == group.bindings.end()) continue;
+        PaletteBinding*& binding = known->second;
+        if (!binding)
+        {
+            const DrawState placed = frame.instancedState(*group.set, group.slot, group.level);
+            binding = placed.binding;
+            if (_counted) _counted->add(*mesh, *binding);
+            visitor.pushStateSet(placed.stateSet);
+            mesh->addTo(visitor, eye.get(), depth);
+            visitor.popStateSet();
+        }
+        binding->add(instances);
     }
-    visitor.popStateSet();
+    if (!isComplete) return instances;
+    if (group.instances.size() <= look.number) group.instances.resize(look.number + 1);
+    return group.instances[look.number] = instances;
 }
 
 } // namespace osgGpuAnimation

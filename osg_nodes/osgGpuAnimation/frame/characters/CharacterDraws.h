@@ -9,6 +9,9 @@
 #include <osg/Drawable>
 #include <osgUtil/CullVisitor>
 
+#include <cstddef>
+#include <memory>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -64,63 +67,88 @@ struct DrawnCharacter
 /// True if characters may share instanced draws of a mesh that is their child.
 bool canBeDrawnTogether(const SkinnedGeometry& mesh);
 
-/// The draws of one cull visitor's characters in a frame. Characters with the same meshes and state, in a bin sorted by
-/// state, form a group: the first is drawn normally, all others by one instanced draw per mesh primitive.
+/// The draws of one cull visitor's characters in a frame. Characters of one set and state, in a bin sorted by state,
+/// form a group: the first with a mesh draws it normally, all others by one instanced draw per mesh primitive,
+/// whichever of the meshes each shows.
 ///
 /// Always drawn normally: meshes with callbacks, with vertex arrays at the locations of placements
 /// (InstanceRuns::isRefusedBy), in bins sorted by depth or traversal, or below other nodes; all meshes if near and far
-/// planes come from primitives; characters with their own StateSet.
+/// planes come from primitives. Characters with a StateSet of their own are a group of their own.
 class CharacterDraws
 {
 public:
     /// Called at the start of a cull traversal. counted: records draws for statistics; null: nobody collects them.
-    void begin(DrawnInstances* counted)
-    {
-        _groups.clear();
-        _lods.clear();
-        _counted = counted;
-    }
+    void begin(DrawnInstances* counted);
 
     /// Draws the character's children. pose: its place in the frame. view: the visitor's.
     void draw(osgUtil::CullVisitor& visitor, LodView& view, const DrawnCharacter& character, PoseFrame& frame,
               SubmittedPose pose);
+    /// The same from the space above a character that is in view, if others have drawn all its meshes. toParent: its
+    /// matrix. False, without an effect: call draw().
+    bool drawFromAbove(osgUtil::CullVisitor& visitor, LodView& view, const DrawnCharacter& character,
+                       const osg::Matrixd& toParent, PoseFrame& frame);
 
 private:
-    /// Characters that differ in poses and placements only.
-    struct Group
+    /// The children that several characters of a set have.
+    struct Look
     {
-        const osgUtil::RenderBin* bin;
-        const osg::RefMatrix* projection;
-        osg::Node::NodeMask traversalMask;
+        std::size_t number; ///< in the traversal
         const AnimationSet* set;
-        std::size_t slot;
-        int level; ///< of detail
-        std::vector<SkinnedGeometry*> meshes;
-        osg::BoundingBox box;               ///< of the meshes
-        PaletteBinding* together = nullptr; ///< null: the group has one character
-
-        bool holds(const Group& other) const;
-    };
-    /// The input of level selection.
-    struct LodInput
-    {
+        osg::Node::NodeMask traversalMask; ///< the visitor's
         std::vector<const osg::Node*> children;
-        LodRange range;
-        osg::BoundingBox box; ///< of the meshes
+        std::vector<SkinnedGeometry*> shared{}; ///< the visible ones that may be drawn with those of other characters
+        std::vector<osg::Node*> others{};       ///< drawn normally
+        osg::BoundingBox box{};                 ///< of the meshes
+        std::optional<LodRange> range{};        ///< empty: not asked for yet
 
         bool isOf(const osg::Group& node) const;
     };
+    /// Characters that differ in poses, placements and looks only.
+    struct Group
+    {
+        const osgUtil::StateGraph* state;
+        const osgUtil::RenderBin* bin;
+        const osg::RefMatrix* projection;
+        const AnimationSet* set;
+        std::size_t slot;
+        int level; ///< of detail
+        /// By the number of their look; null: none yet.
+        std::vector<std::shared_ptr<std::vector<InstanceTransform>>> instances{};
+        std::unordered_map<const osg::Node*, PaletteBinding*> bindings{}; ///< of the meshes' draws; null: drawn once
 
-    bool drawTogether(osgUtil::CullVisitor& visitor, const DrawnCharacter& character, PoseFrame& frame,
-                      SubmittedPose pose, int level, std::vector<osg::Node*>& outOthers);
-    int levelOf(osgUtil::CullVisitor& visitor, LodView& view, const DrawnCharacter& character);
-    const LodInput& lodOf(const DrawnCharacter& character);
-    void open(osgUtil::CullVisitor& visitor, Group& group, PoseFrame& frame, float depth);
+        bool isSame(const Group& other) const;
+        bool isOpen(const Look& look) const
+        {
+            return look.number < instances.size() && instances[look.number] != nullptr;
+        }
+        bool knows(const osg::Node* mesh) const { return bindings.count(mesh) != 0; }
+    };
+    /// The scale of the last selected level, for siblings.
+    struct LastScale
+    {
+        const osg::RefMatrix* toEye = nullptr;
+        const Look* look = nullptr;
+        float pixelError = 0.0f;
+        LodScale scale;
+    };
 
-    std::unordered_map<const osgUtil::StateGraph*, std::vector<Group>> _groups;
-    std::unordered_map<const AnimationSet*, LodInput> _lods; ///< by set, for its last character
-    Group _candidate;                                        ///< kept for its memory
-    DrawnInstances* _counted = nullptr;                      ///< the PoseStage's
+    Look& lookOf(const osgUtil::CullVisitor& visitor, const DrawnCharacter& character);
+    Look newLook(const osgUtil::CullVisitor& visitor, const DrawnCharacter& character) const;
+    int levelOf(osgUtil::CullVisitor& visitor, LodView& view, const DrawnCharacter& character, Look& look,
+                const osg::Matrixd& toVisitor);
+    Group& groupOf(osgUtil::CullVisitor& visitor, const AnimationSet& set, std::size_t slot, int level);
+    void add(osgUtil::CullVisitor& visitor, Group& group, const Look& look, PoseFrame& frame, const osg::Matrixd& toEye,
+             std::size_t instance);
+    std::shared_ptr<std::vector<InstanceTransform>> open(osgUtil::CullVisitor& visitor, Group& group, const Look& look,
+                                                         PoseFrame& frame, float depth);
+
+    std::vector<std::unique_ptr<Look>> _looks; ///< of the traversal
+    std::unordered_multimap<std::size_t, Look*> _looksByHash;
+    Look* _lastLook = nullptr;
+    std::vector<std::unique_ptr<Group>> _groups; ///< of the traversal
+    Group* _lastGroup = nullptr;
+    std::optional<LastScale> _lastScale;
+    DrawnInstances* _counted = nullptr; ///< the PoseStage's
 };
 
 } // namespace osgGpuAnimation

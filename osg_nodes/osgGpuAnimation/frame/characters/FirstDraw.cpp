@@ -171,7 +171,7 @@ private:
         if (_isInstanced)
         {
             binding->setInstanced(_set, 0);
-            binding->add({AffineMatrix(), 0.0f});
+            binding->add(std::make_shared<const std::vector<InstanceTransform>>(1));
             stateSet->setDefine("POSE_INSTANCED");
         }
         else

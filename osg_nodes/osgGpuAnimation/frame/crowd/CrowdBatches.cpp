@@ -69,11 +69,11 @@ void submitListed(PoseFrame& frame, const CrowdInstances& instances, const Drawn
     {
         const std::size_t end = std::min(first + max, indices.size());
         std::unique_ptr<PoseBatch> batch = frame.makeBatch(instances.set());
-        instances.addTo(*batch, Indices(indices.begin() + static_cast<std::ptrdiff_t>(first),
-                                        indices.begin() + static_cast<std::ptrdiff_t>(end)));
+        instances.addTo(*batch, indices.data() + first, end - first);
         const std::shared_ptr<PlacedInstances> list = std::make_shared<PlacedInstances>();
         list->crowd = instances.identity();
         list->poseCount = batch->size();
+        list->drawn.reserve(end - first);
         for (std::size_t i = first; i < end; ++i)
             list->drawn.push_back({static_cast<std::uint32_t>(i - first), indices[i]});
         std::vector<OutfitLists::Run> listed;
@@ -83,12 +83,7 @@ void submitListed(PoseFrame& frame, const CrowdInstances& instances, const Drawn
             if (begin < stop) listed.push_back({run.level, begin - first, stop - begin});
         }
         lists.arrange(instances, list->drawn, listed);
-        const std::size_t slot = frame.submitShared(std::move(batch), &instances, list);
-        for (const OutfitLists::Run& run : listed)
-        {
-            draws.push_back(frame.placedState(*instances.set(), slot, list, run.first, run.count, run.level));
-            draws.back().list = run.list;
-        }
+        submitPlaced(frame, instances, std::move(batch), list, listed, draws);
     }
 }
 
@@ -204,6 +199,18 @@ void CrowdLod::sort(std::vector<std::uint32_t>& indices, std::vector<OutfitLists
     }
 }
 
+void submitPlaced(PoseFrame& frame, const CrowdInstances& instances, std::unique_ptr<PoseBatch> batch,
+                  const std::shared_ptr<const PlacedInstances>& list, const std::vector<OutfitLists::Run>& runs,
+                  std::vector<DrawState>& draws)
+{
+    const std::size_t slot = frame.submitShared(std::move(batch), &instances, list);
+    for (const OutfitLists::Run& run : runs)
+    {
+        draws.push_back(frame.placedState(*instances.set(), slot, list, run.first, run.count, run.level));
+        draws.back().list = run.list;
+    }
+}
+
 std::vector<DrawState> submitSeen(PoseFrame& frame, const CrowdInstances& instances, const CrowdLod& lod,
                                   const DrawnLists* lists, const std::vector<std::uint32_t>& seen)
 {
@@ -222,7 +229,7 @@ std::vector<DrawState> submitSeen(PoseFrame& frame, const CrowdInstances& instan
             continue;
         }
         std::unique_ptr<PoseBatch> batch = frame.makeBatch(instances.set());
-        instances.addTo(*batch, indices);
+        instances.addTo(*batch, indices.data(), indices.size());
         const SubmittedBatch submitted = frame.submit(std::move(batch), &instances, indices);
         if (!lod.isOn()) draws.push_back(submitted.all);
         for (const OutfitLists::Run& run : runs)

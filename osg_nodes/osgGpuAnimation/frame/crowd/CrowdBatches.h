@@ -71,6 +71,11 @@ private:
     const LodScale& _scale;
 };
 
+/// Submits a batch with the list of its instances and appends a draw for each run.
+void submitPlaced(PoseFrame& frame, const CrowdInstances& instances, std::unique_ptr<PoseBatch> batch,
+                  const std::shared_ptr<const PlacedInstances>& list, const std::vector<OutfitLists::Run>& runs,
+                  std::vector<DrawState>& draws);
+
 /// Submits the visible instances of a crowd to the frame and returns one state per draw of the crowd's meshes.
 /// Instances with one clip form one batch, and instances that mix clips form others if there are enough
 /// (PoseBatch::BlendCost); instances with and without constraints never share one. Each level of detail in use has its

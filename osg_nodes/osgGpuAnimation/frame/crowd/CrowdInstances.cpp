@@ -2,49 +2,19 @@
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 
 #include <osgGpuAnimation/animation/detail/ControllerDetail.h>
+#include <osgGpuAnimation/animation/JointPose.h>
 #include <osgGpuAnimation/mesh/lod/LodLevels.h>
+
+#include <layout.glsl>
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
 
 namespace osgGpuAnimation
 {
-
-CrowdPlayback::CrowdPlayback(const AnimationController& controller, double clock)
-    : _offset(controller.time()), _speed(controller.layer(0).settings().speed), _clip(controller.clip()),
-      _isPaused(controller.state() != PlayState::Playing)
-{
-    if (!_isPaused) _offset -= _speed * clock;
-}
-
-void CrowdPlayback::describe(CrowdMember& member) const
-{
-    member.clip = _clip;
-    member.offset = _offset;
-    member.speed = _isPaused ? 0.0 : _speed;
-}
-
-double CrowdPlayback::time(const AnimationSet& set, double clock) const
-{
-    return _clip < 0 ? 0.0 : time(set.clips()[static_cast<std::size_t>(_clip)].duration(), clock);
-}
-
-AnimationController CrowdPlayback::controller(const std::shared_ptr<const AnimationSet>& set, double clock) const
-{
-    AnimationController controller(set);
-    controller.setSpeed(_speed);
-    if (_clip < 0) return controller;
-    const Result<void> playing = controller.play(static_cast<std::size_t>(_clip));
-    assert(playing && "the clip came from a controller of the same set");
-    if (!playing) return controller;
-    controller.seek(time(*set, clock));
-    if (_isPaused) controller.pause();
-    return controller;
-}
 
 namespace
 {
@@ -80,9 +50,9 @@ CrowdInstances::CrowdInstances(const CrowdInstances& other)
     : _set(other._set), _clock(other._clock), _clipBounds(other._clipBounds), _allBounds(other._allBounds),
       _mixBounds(other._mixBounds), _rootMatrices(other._rootMatrices), _positions(other._positions),
       _cells(other._cells), _scales(other._scales), _tints(other._tints), _outfits(other._outfits),
-      _playbacks(other._playbacks), _isControlledKnown(false), _handles(other._handles),
-      _indexOfPlace(other._indexOfPlace), _usesOfPlace(other._usesOfPlace), _freePlaces(other._freePlaces),
-      _tinted(other._tinted), _userData(other._userData)
+      _proportions(other._proportions), _playbacks(other._playbacks), _isControlledKnown(false),
+      _handles(other._handles), _indexOfPlace(other._indexOfPlace), _usesOfPlace(other._usesOfPlace),
+      _freePlaces(other._freePlaces), _tinted(other._tinted), _userData(other._userData)
 {
     for (const std::unique_ptr<AnimationController>& controller : other._controllers)
         _controllers.push_back(controller ? std::make_unique<AnimationController>(*controller) : nullptr);
@@ -150,7 +120,7 @@ CrowdMember CrowdInstances::memberOf(std::size_t index) const
 {
     CrowdMember member(sphereAround(boxOf(index), _rootMatrices[index]));
     member.scale = _scales[index];
-    if (_controllers[index])
+    if (_controllers[index] || proportionsOf(index))
         member.clip = CrowdMember::controlled;
     else
         _playbacks[index].describe(member);
@@ -161,7 +131,9 @@ CrowdMember CrowdInstances::memberOf(std::size_t index) const
 bool CrowdInstances::updatePosedBox(std::size_t index)
 {
     std::unique_ptr<PosedBox>& posed = _posedBoxes[index];
-    const bool isPosed = _controllers[index] && _mixBounds && !_controllers[index]->instruction().poses.empty();
+    const std::shared_ptr<const JointPose>& proportions = proportionsOf(index);
+    const bool isPosed =
+        _mixBounds && (proportions || (_controllers[index] && !_controllers[index]->instruction().poses.empty()));
     if (!isPosed && !posed) return false;
     if (!isPosed)
     {
@@ -169,7 +141,9 @@ bool CrowdInstances::updatePosedBox(std::size_t index)
         return true;
     }
     thread_local std::vector<PlayedClip> played;
-    ControllerDetail::findPlayedClips(*_controllers[index], played);
+    played.assign(1, PlayedClip{_playbacks[index].clip()});
+    if (_controllers[index]) ControllerDetail::findPlayedClips(*_controllers[index], played);
+    if (proportions) played.push_back({-1, PlayedClip::Part::Mixed, proportions->extent()});
     if (posed && posed->played == played) return false;
     posed = std::make_unique<PosedBox>(PosedBox{played, _mixBounds->box(played, anyConstraints(*_set))});
     return true;
@@ -243,6 +217,7 @@ void CrowdInstances::remove(std::size_t index)
 
 void CrowdInstances::move(std::size_t index, const AffineMatrix& rootMatrix, const osg::Vec3d& position)
 {
+    ++_motions;
     _rootMatrices.set(index, rootMatrix);
     _positions[index] = position;
     _scales[index] = maxScale(rootMatrix);
@@ -276,12 +251,37 @@ void CrowdInstances::setOutfit(std::size_t index, std::uint16_t outfit)
 {
     if (_outfits.empty() && outfit == 0) return;
     _outfits.resize(size(), 0);
+    const std::shared_ptr<const JointPose> before = proportionsOf(index);
     _outfits[index] = outfit;
+    if (before != proportionsOf(index)) updateProportions(index);
 }
 
 void CrowdInstances::removeOutfit(std::uint16_t outfit)
 {
-    std::replace(_outfits.begin(), _outfits.end(), outfit, std::uint16_t(0));
+    for (std::size_t index = 0; index < _outfits.size(); ++index)
+        if (_outfits[index] == outfit) setOutfit(index, 0);
+}
+
+void CrowdInstances::setProportions(std::uint16_t outfit, std::shared_ptr<const JointPose> proportions)
+{
+    if (!proportions && outfit >= _proportions.size()) return;
+    if (outfit >= _proportions.size()) _proportions.resize(outfit + 1u);
+    _proportions[outfit] = std::move(proportions);
+    for (std::size_t index = 0; index < _outfits.size(); ++index)
+        if (_outfits[index] == outfit) updateProportions(index);
+}
+
+void CrowdInstances::updateProportions(std::size_t index)
+{
+    ++_motions;
+    updatePosedBox(index);
+    updateMember(index);
+}
+
+const std::shared_ptr<const JointPose>& CrowdInstances::proportionsOf(std::size_t index) const
+{
+    static const std::shared_ptr<const JointPose> none;
+    return outfit(index) < _proportions.size() ? _proportions[outfit(index)] : none;
 }
 
 void CrowdInstances::setUserData(std::size_t index, osg::Referenced* data)
@@ -300,9 +300,16 @@ osg::Referenced* CrowdInstances::userData(std::size_t index) const
 
 PoseInstruction CrowdInstances::instruction(std::size_t index) const
 {
-    if (_controllers[index]) return _controllers[index]->instruction();
     PoseInstruction instruction;
-    instruction.samples[0] = _playbacks[index].sample(*_set, _clock);
+    if (_controllers[index])
+        instruction = _controllers[index]->instruction();
+    else
+        instruction.samples[0] = _playbacks[index].sample(*_set, _clock);
+    const std::shared_ptr<const JointPose>& proportions = proportionsOf(index);
+    if (!proportions || instruction.sampleCount == PoseInstruction::maxSamples) return instruction;
+    instruction.samples[instruction.sampleCount++] = {static_cast<std::uint32_t>(instruction.poses.size()), 0.0f, 1.0f,
+                                                      POSE_SAMPLE_POSED | POSE_SAMPLE_ABOVE};
+    instruction.poses.push_back(proportions);
     return instruction;
 }
 
@@ -370,6 +377,7 @@ bool CrowdInstances::advance(double seconds, PendingEvents& outEvents)
     for (const auto& [handle, machine] : _machines)
         machine->update(controller(indexOf(handle)), seconds);
     if (std::isfinite(seconds)) _clock += seconds;
+    ++_motions;
     if (!_isControlledKnown)
     {
         _controlled.clear();
@@ -399,21 +407,25 @@ bool CrowdInstances::advance(double seconds, PendingEvents& outEvents)
 
 PoseBatch::BlendCost CrowdInstances::blendCost(std::size_t index) const
 {
+    if (proportionsOf(index)) return PoseBatch::BlendCost::Posed;
     return _controllers[index] ? PoseBatch::blendCostOf(_controllers[index]->instruction())
                                : PoseBatch::BlendCost::Plain;
 }
 
-void CrowdInstances::addTo(PoseBatch& batch, const std::vector<std::uint32_t>& indices) const
+void CrowdInstances::addTo(PoseBatch& batch, const std::uint32_t* indices, std::size_t count) const
 {
-    for (const std::uint32_t index : indices)
+    for (std::size_t place = 0; place < count; ++place)
     {
-        if (_controllers[index])
+        const std::uint32_t index = indices[place];
+        if (proportionsOf(index))
+            batch.add(instruction(index), _rootMatrices[index]);
+        else if (_controllers[index])
             batch.add(_controllers[index]->instruction(), _rootMatrices[index]);
         else
             batch.addSample(_playbacks[index].sample(*_set, _clock), _rootMatrices[index]);
     }
     if (_tinted == 0) return;
-    for (std::size_t place = 0; place < indices.size(); ++place)
+    for (std::size_t place = 0; place < count; ++place)
         batch.setTint(place, _tints[indices[place]]);
 }
 

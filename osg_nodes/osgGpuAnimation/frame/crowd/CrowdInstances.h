@@ -7,6 +7,7 @@
 #include <osgGpuAnimation/animation/playback/PendingEvents.h>
 #include <osgGpuAnimation/animation/StateMachine.h>
 #include <osgGpuAnimation/frame/crowd/CrowdCells.h>
+#include <osgGpuAnimation/frame/crowd/CrowdPlayback.h>
 #include <osgGpuAnimation/gpu/buffers/SharedBlocks.h>
 #include <osgGpuAnimation/gpu/PoseBatch.h>
 
@@ -45,45 +46,6 @@ inline osg::Vec4 toColor(std::uint32_t rgba)
     const auto channel = [rgba](int shift) { return static_cast<float>(rgba >> shift & 255u) / 255.0f; };
     return {channel(0), channel(8), channel(16), channel(24)};
 }
-
-/// The playback of an instance that loops one clip (ControllerDetail::isPlainLoop): the controller's state in 24
-/// bytes. Its time follows from the crowd's clock, so it needs no advance().
-class CrowdPlayback
-{
-public:
-    CrowdPlayback() = default; ///< shows the rest pose
-    /// controller: ControllerDetail::isPlainLoop(). clock: the crowd's, in seconds.
-    CrowdPlayback(const AnimationController& controller, double clock);
-
-    int clip() const { return _clip; } ///< -1: none, the rest pose
-    /// Clip time in seconds, in [0, duration). duration: of the clip.
-    double time(double duration, double clock) const
-    {
-        return loopTime(_isPaused ? _offset : _offset + _speed * clock, duration);
-    }
-    /// The time of a loop in seconds, in [0, duration). unrolled: the clip seconds of all its rounds.
-    static double loopTime(double unrolled, double duration)
-    {
-        // Rounds to the nearest integer, without a call of the library: beyond 2^51 loops the time is 0.
-        constexpr double toInteger = 1.5 * (std::uint64_t(1) << 52);
-        const double loops = (unrolled / duration + toInteger) - toInteger;
-        double time = unrolled - loops * duration;
-        time += time < 0.0 ? duration : 0.0;
-        return time >= 0.0 && time < duration ? time : 0.0;
-    }
-    double time(const AnimationSet& set, double clock) const; ///< The same.
-    BlendSample sample(const AnimationSet& set, double clock) const { return set.sampleAt(_clip, time(set, clock)); }
-    /// Sets the clip and the times of a member.
-    void describe(CrowdMember& member) const;
-    /// A controller in the same state.
-    AnimationController controller(const std::shared_ptr<const AnimationSet>& set, double clock) const;
-
-private:
-    double _offset = 0.0; ///< clip seconds at clock 0; if paused, at any clock
-    double _speed = 1.0;
-    int _clip = -1;
-    bool _isPaused = false;
-};
 
 /// The instances of an AnimatedCrowd as dense arrays, one array per property. A handle identifies an instance for its
 /// lifetime; its index changes when other instances are removed.
@@ -124,6 +86,9 @@ public:
     void setOutfit(std::size_t index, std::uint16_t outfit);
     std::uint16_t outfit(std::size_t index) const { return _outfits.empty() ? std::uint16_t(0) : _outfits[index]; }
     void removeOutfit(std::uint16_t outfit); ///< its instances have none
+    /// The scales of joints of the outfit's instances, which have poses of their own; null: those of the clips.
+    void setProportions(std::uint16_t outfit, std::shared_ptr<const JointPose> proportions);
+    bool hasProportions() const { return !_proportions.empty(); } ///< some outfit has had some
     /// The application's data of an instance; null: none.
     void setUserData(std::size_t index, osg::Referenced* data);
     osg::Referenced* userData(std::size_t index) const;
@@ -154,7 +119,10 @@ public:
     }
     /// The number of instances with a controller.
     std::size_t controllerCount() const;
+    bool hasController(std::size_t index) const { return _controllers[index] != nullptr; }
     double clock() const { return _clock; } ///< seconds; see CrowdMember
+    /// Grows with each advance() and move(): the same number, the same joints of instances without a controller.
+    std::uint64_t motions() const { return _motions; }
     /// Identifies this object and no copy.
     const std::shared_ptr<const void>& identity() const { return _identity; }
     /// Snapshots for frames, by index. Tints: empty if all are white.
@@ -181,11 +149,11 @@ public:
         _cells.findSeen(planes, outSeen);
     }
     /// Adds the instances to the batch, in the order of the indices.
-    void addTo(PoseBatch& batch, const std::vector<std::uint32_t>& indices) const;
+    void addTo(PoseBatch& batch, const std::uint32_t* indices, std::size_t count) const;
 
 private:
     static std::size_t placeOf(Handle handle) { return handle & 0xFFFFFFFFu; } ///< in _indexOfPlace
-    /// The box of an instance with a JointPose, in the character's space.
+    /// The box of an instance with a JointPose or proportions, in the character's space.
     struct PosedBox
     {
         std::vector<PlayedClip> played;
@@ -196,11 +164,14 @@ private:
     CrowdMember memberOf(std::size_t index) const;
     void updateMember(std::size_t index) { _cells.set(index, memberOf(index)); }
     bool updatePosedBox(std::size_t index);
+    void updateProportions(std::size_t index);
+    const std::shared_ptr<const JointPose>& proportionsOf(std::size_t index) const; ///< null: those of the clips
     void listenTo(std::size_t index);
     Handle newHandle(std::size_t index);
 
     std::shared_ptr<const AnimationSet> _set;
     double _clock = 0.0; ///< seconds
+    std::uint64_t _motions = 0;
     std::vector<Box> _clipBounds;
     Box _allBounds; ///< of instances with a controller
     std::shared_ptr<const MixBounds> _mixBounds;
@@ -209,12 +180,13 @@ private:
     CrowdCells _cells;
     std::vector<float> _scales;
     SharedBlocks<std::uint32_t> _tints;
-    std::vector<std::uint16_t> _outfits; ///< empty: all have none
+    std::vector<std::uint16_t> _outfits;                        ///< empty: all have none
+    std::vector<std::shared_ptr<const JointPose>> _proportions; ///< by outfit; may have fewer
     std::vector<CrowdPlayback> _playbacks;
     std::vector<std::unique_ptr<AnimationController>> _controllers; ///< mostly null
     std::vector<std::uint32_t> _controlled;                         ///< the indices of those that are not null
     bool _isControlledKnown = true;                                 ///< false: _controlled is out of date
-    std::vector<std::unique_ptr<PosedBox>> _posedBoxes;             ///< null without a JointPose
+    std::vector<std::unique_ptr<PosedBox>> _posedBoxes;             ///< null without a JointPose or proportions
     std::vector<Handle> _handles;
     std::vector<std::uint32_t> _indexOfPlace; ///< by the lower half of a handle
     std::vector<std::uint32_t> _usesOfPlace;

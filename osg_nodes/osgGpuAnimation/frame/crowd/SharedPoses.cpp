@@ -312,25 +312,36 @@ std::vector<SharedPoses::Shape> SharedPoses::shapesBelow(const osg::Group& crowd
     return shapes;
 }
 
-SharedPoses::SharedPoses(const osg::Group& crowd, const AnimationSet& set)
+SharedPoses::SharedPoses(const osg::Group& crowd, const std::shared_ptr<const AnimationSet>& set)
 {
     const std::shared_ptr<Meshes> computed = std::make_shared<Meshes>();
     computed->shapes = shapesBelow(crowd);
     std::vector<const SkinnedGeometry*> skinned;
     for (const Shape& shape : computed->shapes)
         skinned.push_back(shape.mesh.get());
-    MixBounds::Boxes boxes = mixBoxesOf(skinned, set);
+    MixBounds::Boxes boxes = mixBoxesOf(skinned, *set);
     // Weights change colours and normals too: they count as if they moved the vertices through their box.
     const bool isMorphed = std::any_of(skinned.begin(), skinned.end(),
                                        [](const SkinnedGeometry* mesh) { return !mesh->getMorphTargets().empty(); });
     for (std::size_t entry = 0; isMorphed && entry < boxes.reaches.size(); ++entry)
         if (const Box& box = boxes.ofClips[entry]; !box.empty())
             boxes.reaches[entry] = std::max(boxes.reaches[entry], glm::distance(box.min, box.max));
-    computed->clips.emplace_back().minReach = std::numeric_limits<float>::infinity();
-    computed->clips.emplace_back().poses.emplace_back();
-    for (std::size_t clip = 0; clip < set.clips().size(); ++clip)
+    computed->thread = std::async(std::launch::async,
+                                  [set, boxes = std::move(boxes), meshes = computed.get()]
+                                  {
+                                      meshes->addClips(*set, boxes);
+                                      meshes->isMade = true;
+                                  });
+    _meshes = computed;
+}
+
+void SharedPoses::Meshes::addClips(const AnimationSet& set, const MixBounds::Boxes& boxes)
+{
+    clips.emplace_back().minReach = std::numeric_limits<float>::infinity();
+    clips.emplace_back().poses.emplace_back();
+    for (std::size_t clip = 0; clip < set.clips().size() && !isStopped; ++clip)
     {
-        SharedClip& shared = computed->clips.emplace_back();
+        SharedClip& shared = clips.emplace_back();
         shared.travel = ClipTravel(set, clip, boxes.ofClips, boxes.reaches);
         shared.duration = set.clips()[clip].duration();
         const float length = shared.travel.length();
@@ -342,7 +353,6 @@ SharedPoses::SharedPoses(const osg::Group& crowd, const AnimationSet& set)
         shared.stepsPerTravel = static_cast<float>(steps) / length;
         shared.minReach = 0.5f;
     }
-    _meshes = computed;
 }
 
 bool SharedPoses::isOf(const osg::Group& crowd) const
@@ -350,8 +360,10 @@ bool SharedPoses::isOf(const osg::Group& crowd) const
     return shapesBelow(crowd) == _meshes->shapes;
 }
 
-void SharedPoses::forgetUnused()
+void SharedPoses::update(bool waits)
 {
+    if (waits) _meshes->thread.wait();
+    _areUsed = _meshes->isMade;
     _before = std::move(_latest);
     _latest.clear();
 }
@@ -408,13 +420,7 @@ std::vector<DrawState> SharedPoses::submit(PoseFrame& frame, const CrowdInstance
                          });
         firstPose += batch->size();
         if (lists) lists->arrange(instances, list->drawn, runs);
-        const std::shared_ptr<const PlacedInstances> placed = shared(list);
-        const std::size_t slot = frame.submitShared(std::move(batch), &instances, placed);
-        for (const OutfitLists::Run& run : runs)
-        {
-            draws.push_back(frame.placedState(set, slot, placed, run.first, run.count, run.level));
-            draws.back().list = run.list;
-        }
+        submitPlaced(frame, instances, std::move(batch), shared(list), runs, draws);
     }
     return draws;
 }
@@ -424,7 +430,7 @@ std::vector<DrawState> submitSeen(PoseFrame& frame, const CrowdInstances& instan
 {
     static thread_local std::vector<std::uint32_t> others; // keeps its storage from cull to cull
     std::vector<DrawState> draws;
-    if (shared && scale.isOn())
+    if (shared && shared->areUsed() && scale.isOn())
         draws = shared->submit(frame, instances, scale, lists, seen, others);
     else
         seen.findIndices(instances.size(), others);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/bounds/ClipTravel.h>
+#include <osgGpuAnimation/animation/bounds/MixBounds.h>
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/frame/crowd/OutfitLists.h>
 #include <osgGpuAnimation/frame/stage/LodSelection.h>
@@ -11,7 +12,9 @@
 
 #include <osg/Group>
 
+#include <atomic>
 #include <cstdint>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -28,16 +31,18 @@ class SharedPoses
 public:
     static constexpr int maxSteps = 1024; ///< of a clip
 
-    /// crowd: the node with the meshes.
-    SharedPoses(const osg::Group& crowd, const AnimationSet& set);
+    /// Begins to compute the steps in a thread: 2 ms a clip of the Knight. crowd: the node with the meshes.
+    SharedPoses(const osg::Group& crowd, const std::shared_ptr<const AnimationSet>& set);
     /// Shares what was computed from the meshes.
     SharedPoses(const SharedPoses& other) : _meshes(other._meshes) {}
     SharedPoses& operator=(const SharedPoses&) = delete;
 
     /// True if the crowd still has the same meshes.
     bool isOf(const osg::Group& crowd) const;
-    /// Called in each update: forgets the lists that were not drawn since the last call.
-    void forgetUnused();
+    /// Called in each update: forgets the lists that were not drawn since the last call. waits: until the thread ends.
+    void update(bool waits);
+    /// True: the thread had ended at the last update(), and submit() may be called; the same in a frame's cameras.
+    bool areUsed() const { return _areUsed; }
 
     /// Submits the visible instances that share poses to the frame and returns a state for each draw of the crowd's
     /// meshes. outOthers: the indices of the others. scale: of the camera that culls. lists: of a crowd with outfits;
@@ -67,8 +72,13 @@ private:
     /// What depends on the meshes.
     struct Meshes
     {
+        ~Meshes() { isStopped = true; } // before the future waits
+        void addClips(const AnimationSet& set, const MixBounds::Boxes& boxes);
+
         std::vector<Shape> shapes;
         std::vector<SharedClip> clips; ///< of instances with a controller: none share; the rest pose; those of the set
+        std::atomic<bool> isMade{false}, isStopped{false};
+        std::future<void> thread; ///< the last member: it uses the others
     };
     class Collection;
 
@@ -76,6 +86,7 @@ private:
     std::shared_ptr<const PlacedInstances> shared(std::shared_ptr<PlacedInstances> placed) const;
 
     std::shared_ptr<const Meshes> _meshes;
+    bool _areUsed = false;
     mutable std::mutex _mutex;
     mutable std::vector<std::shared_ptr<const PlacedInstances>> _latest; ///< lists drawn since the last update
     std::vector<std::shared_ptr<const PlacedInstances>> _before;         ///< those of the update before

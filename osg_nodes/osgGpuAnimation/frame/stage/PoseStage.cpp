@@ -71,6 +71,13 @@ void PoseStage::draw(osgUtil::CullVisitor& visitor, const DrawnCharacter& charac
                       stage._frame->submit(character.node, character.controller, character.rootMatrix));
 }
 
+bool PoseStage::drawFromAbove(osgUtil::CullVisitor& visitor, const DrawnCharacter& character,
+                              const osg::Matrixd& toParent)
+{
+    PoseStage& stage = current(visitor);
+    return stage._draws.drawFromAbove(visitor, stage._lodView, character, toParent, *stage._frame);
+}
+
 PoseFrame& PoseStage::frame(osgUtil::CullVisitor& visitor)
 {
     return *current(visitor)._frame;

@@ -9,8 +9,8 @@ namespace osgGpuAnimation
 InstanceTransformBuffers::InstanceTransformBuffers(unsigned int contextId)
     : osg::GraphicsObjectManager("InstanceTransformBuffers", contextId)
 {
-    for (List& list : _lists)
-        list.buffer = std::make_unique<BufferTexture>(*osg::GLExtensions::Get(contextId, true), GL_RGBA32F_ARB);
+    for (Joined& joined : _joined)
+        joined.buffer = std::make_unique<BufferTexture>(*osg::GLExtensions::Get(contextId, true), GL_RGBA32F_ARB);
 }
 
 InstanceTransformBuffers& InstanceTransformBuffers::of(osg::State& state)
@@ -18,31 +18,33 @@ InstanceTransformBuffers& InstanceTransformBuffers::of(osg::State& state)
     return *osg::get<InstanceTransformBuffers>(state.getContextID());
 }
 
-const BufferTexture& InstanceTransformBuffers::buffer(std::uint64_t serial,
-                                                      const std::vector<InstanceTransform>& transforms)
+const InstanceTransformBuffers::Joined& InstanceTransformBuffers::joined(const InstanceLists& lists)
 {
-    for (const List& list : _lists)
-        if (list.serial == serial) return *list.buffer;
-    List& list = _lists[_oldest];
-    _oldest = (_oldest + 1) % _lists.size();
-    list.serial = serial;
-    list.buffer->upload(transforms.data(), transforms.size() * sizeof(InstanceTransform));
-    return *list.buffer;
+    for (const Joined& known : _joined)
+        if (known.lists == lists) return known;
+    Joined& joined = _joined[_oldest];
+    _oldest = (_oldest + 1) % _joined.size();
+    joined.lists = lists;
+    joined.transforms.clear();
+    for (const auto& list : lists)
+        joined.transforms.insert(joined.transforms.end(), list->begin(), list->end());
+    joined.buffer->upload(joined.transforms.data(), joined.transforms.size() * sizeof(InstanceTransform));
+    return joined;
 }
 
 void InstanceTransformBuffers::deleteAllGLObjects()
 {
-    for (List& list : _lists)
-        list.buffer->release();
+    for (Joined& joined : _joined)
+        joined.buffer->release();
     discardAllGLObjects();
 }
 
 void InstanceTransformBuffers::discardAllGLObjects()
 {
-    for (List& list : _lists)
+    for (Joined& joined : _joined)
     {
-        list.buffer->discard();
-        list.serial = 0;
+        joined.buffer->discard();
+        joined.lists.clear();
     }
 }
 

@@ -25,6 +25,9 @@ struct InstanceTransform
 
 static_assert(sizeof(InstanceTransform) == 4 * BufferTexture::texelBytes, "an instance transform is four attributes");
 
+/// The instances of one or several lists, in sequence: characters that show the same meshes share a list.
+using InstanceLists = std::vector<std::shared_ptr<const std::vector<InstanceTransform>>>;
+
 /// The buffers of instance transforms of one graphics context. It keeps the last lists that were drawn, since all
 /// meshes of the same characters are drawn in sequence. Call it on the draw side only, with the context current.
 class InstanceTransformBuffers : public osg::GraphicsObjectManager
@@ -34,8 +37,16 @@ public:
 
     static InstanceTransformBuffers& of(osg::State& state);
 
-    /// The buffer of a list, uploaded at the first call. serial: identifies the list, never reused.
-    const BufferTexture& buffer(std::uint64_t serial, const std::vector<InstanceTransform>& transforms);
+    /// Lists in one array and one buffer.
+    struct Joined
+    {
+        InstanceLists lists;
+        std::vector<InstanceTransform> transforms;
+        std::unique_ptr<BufferTexture> buffer;
+    };
+
+    /// The lists, uploaded at the first call; they do not change any more. Valid until two others are asked for.
+    const Joined& joined(const InstanceLists& lists);
 
     void flushDeletedGLObjects(double, double&) override {}
     void flushAllDeletedGLObjects() override {}
@@ -46,13 +57,7 @@ protected:
     ~InstanceTransformBuffers() override = default;
 
 private:
-    struct List
-    {
-        std::uint64_t serial = 0; ///< 0: none yet
-        std::unique_ptr<BufferTexture> buffer;
-    };
-
-    std::array<List, 2> _lists;
+    std::array<Joined, 2> _joined;
     std::size_t _oldest = 0;
 };
 

@@ -26,8 +26,8 @@ struct PlacedInstances
     struct Drawn
     {
         std::uint32_t pose; ///< index in the PoseBatch
-        std::uint32_t
-            instance; ///< index in the crowd, so in the placements and tints; above it the number of its outfit
+        /// Index in the crowd, so in the placements and tints; above it the number of its outfit.
+        std::uint32_t instance;
 
         std::uint32_t index() const { return instance & POSE_DRAWN_INDEX_MASK; } ///< in the crowd
     };

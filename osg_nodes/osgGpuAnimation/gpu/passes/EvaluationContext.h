@@ -54,7 +54,11 @@ struct EvaluationContext
     BufferTexture mixedTracks; ///< separate: the result of the mix stage
     BufferTexture solved;      ///< the rotations of one constraint
     BufferTexture corrections; ///< those of all constraints so far, see CorrectionPlace
-    std::uint64_t draws = 0;   ///< of all passes so far
+    std::vector<AffineMatrix> onCpu; ///< memory of evaluateOnCpu()
+    std::uint64_t draws = 0;         ///< of all passes so far
+    // See PosePipeline::Options.
+    bool drawsTriangles = true;
+    bool usesBaseInstances = false;
 
 private:
     using Pass = std::unique_ptr<FeedbackPass>;

@@ -8,6 +8,9 @@
 #ifndef GL_TIMESTAMP
 #define GL_TIMESTAMP 0x8E28
 #endif
+#ifndef GL_QUERY_COUNTER_BITS_ARB
+#define GL_QUERY_COUNTER_BITS_ARB 0x8864
+#endif
 
 namespace osgGpuAnimation
 {
@@ -30,6 +33,8 @@ void DeletionLists::make(osg::State& state)
 FeedbackTimer::FeedbackTimer(unsigned int contextId)
     : osg::GraphicsObjectManager("FeedbackTimer", contextId), _gl(osg::GLExtensions::Get(contextId, true))
 {
+    // Some drivers have the queries but no clock.
+    if (_gl->isARBTimerQuerySupported) _gl->glGetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS_ARB, &_clockBits);
 }
 
 FeedbackTimer& FeedbackTimer::of(osg::State& state)
@@ -53,7 +58,7 @@ FeedbackTimer::Stamps FeedbackTimer::nextStamps()
 
 void FeedbackTimer::begin()
 {
-    _isMeasuring = _gl->isARBTimerQuerySupported && _inFlight.size() < maxInFlight;
+    _isMeasuring = _clockBits > 0 && _inFlight.size() < maxInFlight;
     if (!_isMeasuring) return;
     _inFlight.push_back(nextStamps());
     _gl->glQueryCounter(_inFlight.back().begin, GL_TIMESTAMP);

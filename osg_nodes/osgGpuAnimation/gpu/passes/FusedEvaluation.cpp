@@ -105,7 +105,7 @@ void FusedEvaluation::drawEntries(FeedbackPass& pass, std::size_t first, std::si
                                   std::size_t place)
 {
     const BufferTexture& entries = _constraints ? _constraints->entries() : _buffers.entries();
-    const bool canOffset = FeedbackPass::canOffsetInstances(*_context.gl);
+    const bool canOffset = _context.usesBaseInstances;
     if (const std::size_t bound = canOffset ? 0 : first;
         _arrays.entries != entries.serial() || _arrays.firstEntry != bound)
     {
@@ -115,7 +115,7 @@ void FusedEvaluation::drawEntries(FeedbackPass& pass, std::size_t first, std::si
         _arrays.firstEntry = bound;
     }
     pass.runInstanced(_chunk.width, count, canOffset ? first : 0, out.buffer(),
-                      place * _chunk.width * EvaluationContext::matrixBytes);
+                      place * _chunk.width * EvaluationContext::matrixBytes, _context.drawsTriangles);
     ++_context.draws;
 }
 

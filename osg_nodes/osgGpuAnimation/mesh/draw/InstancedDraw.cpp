@@ -159,14 +159,14 @@ InstanceRuns::InstanceRuns(osg::State& state, const PosePipeline& pipeline, cons
     _isSkinned = !_isDrawn || (program && program->getUniformLocation(paletteName) >= 0);
     if (binding.getPlaced()) findPlaced();
     if (!_isSkinned) _view = state.getModelViewMatrix();
-    if (binding.getSerial() == 0) return;
-    if (program && program->getAttribLocation("poseInstancePose") == POSE_INSTANCE_POSE_LOCATION)
-        _transforms = &InstanceTransformBuffers::of(state).buffer(binding.getSerial(), binding.getInstanceTransforms());
+    if (!binding.isInstanced()) return;
+    _transforms = &InstanceTransformBuffers::of(state).joined(binding.getInstanceLists());
+    _areAttributes = program && program->getAttribLocation("poseInstancePose") == POSE_INSTANCE_POSE_LOCATION;
 }
 
 InstanceRuns::~InstanceRuns()
 {
-    if (_transforms)
+    if (_areAttributes)
     {
         const osg::GLExtensions& gl = *_state.get<osg::GLExtensions>();
         for (const unsigned int location : attributeLocations)
@@ -175,7 +175,7 @@ InstanceRuns::~InstanceRuns()
             gl.glVertexAttribDivisor(location, 0);
         }
     }
-    else if (!_isSkinned || _binding.getSerial() != 0)
+    else if (!_isSkinned || _transforms)
     {
         _state.applyModelViewMatrix(new osg::RefMatrix(_view));
         _state.applyModelViewAndProjectionUniformsIfRequired();
@@ -206,7 +206,7 @@ void InstanceRuns::findPlaced()
 InstanceRuns::Run InstanceRuns::at(std::size_t first) const
 {
     if (!_isDrawn) return {};
-    Run run = _binding.getPlaced() ? _placed : _binding.getSerial() != 0 ? runOfTransforms(first) : runOfBatch(first);
+    Run run = _binding.getPlaced() ? _placed : _transforms ? runOfTransforms(first) : runOfBatch(first);
     if (!_isSkinned) run.count = std::min<std::size_t>(run.count, 1);
     return run;
 }
@@ -221,9 +221,9 @@ InstanceRuns::Run InstanceRuns::runOfBatch(std::size_t first) const
 
 InstanceRuns::Run InstanceRuns::runOfTransforms(std::size_t first) const
 {
-    const std::vector<InstanceTransform>& placements = _binding.getInstanceTransforms();
+    const std::vector<InstanceTransform>& placements = _transforms->transforms;
     Run run{_pipeline.place(*_binding.getAnimationSet(), _binding.getSlot(), poseOf(placements[first])), 1};
-    if (!_transforms || run.place.texture == 0) return run;
+    if (!_areAttributes || run.place.texture == 0) return run;
     const auto isInChunk = [&](std::size_t pose) { return pose >= run.place.chunkBegin && pose < run.place.chunkEnd; };
     while (first + run.count < placements.size() && isInChunk(poseOf(placements[first + run.count])))
         ++run.count;
@@ -235,7 +235,7 @@ void InstanceRuns::use(std::size_t first) const
 {
     if (!_isSkinned) return usePiece(first);
     if (_binding.getPlaced()) usePlaced();
-    if (_binding.getSerial() != 0) useTransforms(first);
+    if (_transforms) useTransforms(first);
 }
 
 void InstanceRuns::usePlaced() const
@@ -256,9 +256,9 @@ void InstanceRuns::usePlaced() const
 
 void InstanceRuns::useTransforms(std::size_t first) const
 {
-    if (!_transforms)
+    if (!_areAttributes)
     {
-        _state.applyModelViewMatrix(new osg::RefMatrix(toOsg(_binding.getInstanceTransforms()[first].toEye)));
+        _state.applyModelViewMatrix(new osg::RefMatrix(toOsg(_transforms->transforms[first].toEye)));
         return _state.applyModelViewAndProjectionUniformsIfRequired();
     }
     // The buffer that is bound below is unknown to OSG.
@@ -266,7 +266,7 @@ void InstanceRuns::useTransforms(std::size_t first) const
     std::size_t offset = first * sizeof(InstanceTransform);
     for (const unsigned int location : attributeLocations)
     {
-        _transforms->bindAttributes(location, 1, sizeof(InstanceTransform), offset, 1);
+        _transforms->buffer->bindAttributes(location, 1, sizeof(InstanceTransform), offset, 1);
         offset += BufferTexture::texelBytes;
     }
 }
@@ -284,9 +284,9 @@ void InstanceRuns::usePiece(std::size_t first) const
             toEye.preMult(toOsg(placed->placements[block]->elements[drawn.index() % blockSize]));
         pose = drawn.pose;
     }
-    else if (_binding.getSerial() != 0)
+    else if (_transforms)
     {
-        const InstanceTransform& placement = _binding.getInstanceTransforms()[first];
+        const InstanceTransform& placement = _transforms->transforms[first];
         toEye = toOsg(placement.toEye);
         pose = poseOf(placement);
     }

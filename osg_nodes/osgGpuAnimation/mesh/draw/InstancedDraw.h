@@ -92,7 +92,8 @@ private:
     const PaletteBinding& _binding;
     Run _placed; ///< of a list
     PlacedInstanceBuffers::Textures _textures;
-    const BufferTexture* _transforms = nullptr; ///< null: one draw per character
+    const InstanceTransformBuffers::Joined* _transforms = nullptr; ///< null: the binding has no placements
+    bool _areAttributes = false; ///< true: the program reads the placements; false: one draw per character
     bool _isSkinned = true;
     bool _isDrawn = true;
     osg::Matrixd _view; ///< the draw's own model-view matrix

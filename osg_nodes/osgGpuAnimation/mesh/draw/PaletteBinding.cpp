@@ -9,8 +9,8 @@ namespace osgGpuAnimation
 
 PaletteBinding::PaletteBinding(const PaletteBinding& other, const osg::CopyOp& copyop)
     : osg::StateAttribute(other, copyop), _set(other._set), _slot(other._slot), _instance(other._instance),
-      _instanceCount(other._instanceCount), _transforms(other._transforms), _placed(other._placed),
-      _serial(other._serial), _level(other._level)
+      _instanceCount(other._instanceCount), _lists(other._lists), _placed(other._placed), _serial(other._serial),
+      _level(other._level)
 {
 }
 
@@ -21,7 +21,7 @@ void PaletteBinding::set(std::shared_ptr<const AnimationSet> set, std::size_t sl
     _slot = slot;
     _instance = instance;
     _instanceCount = instanceCount;
-    _transforms.clear();
+    _lists.clear();
     _placed = nullptr;
     _serial = 0;
     _level = allTriangles;
@@ -39,6 +39,15 @@ void PaletteBinding::setPlaced(std::shared_ptr<const AnimationSet> set, std::siz
 {
     this->set(std::move(set), slot, first, count);
     _placed = std::move(placed);
+}
+
+std::size_t PaletteBinding::getDrawnCount() const
+{
+    if (!isInstanced()) return _instanceCount;
+    std::size_t count = 0;
+    for (const auto& list : _lists)
+        count += list->size();
+    return count;
 }
 
 int PaletteBinding::compare(const osg::StateAttribute& other) const

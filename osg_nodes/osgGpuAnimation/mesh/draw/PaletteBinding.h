@@ -37,19 +37,20 @@ public:
     /// The level of detail; set() and setInstanced() reset it to all triangles.
     void setLevel(int level) { _level = level; }
     int getLevel() const { return _level; }
-    /// Selects instances with a placement each, for an instanced draw; add() adds them.
+    /// Selects instances with a placement each, for an instanced draw; add() adds lists of them, which may grow until
+    /// the draw.
     void setInstanced(std::shared_ptr<const AnimationSet> set, std::size_t slot);
-    void add(const InstanceTransform& placement) { _transforms.push_back(placement); }
-    const std::vector<InstanceTransform>& getInstanceTransforms() const { return _transforms; }
-    /// Identifies the list of placements; 0: the instances use the draw's model-view matrix.
-    std::uint64_t getSerial() const { return _serial; }
+    void add(InstanceLists::value_type list) { _lists.push_back(std::move(list)); }
+    const InstanceLists& getInstanceLists() const { return _lists; }
+    /// False: the instances use the draw's model-view matrix.
+    bool isInstanced() const { return _serial != 0; }
 
     const AnimationSet* getAnimationSet() const { return _set.get(); }
     std::size_t getSlot() const { return _slot; }
     std::size_t getInstance() const { return _instance; }           ///< the first
     std::size_t getInstanceCount() const { return _instanceCount; } ///< consecutive
     /// The number of drawn instances, with placements or without.
-    std::size_t getDrawnCount() const { return _serial != 0 ? _transforms.size() : _instanceCount; }
+    std::size_t getDrawnCount() const;
 
     int compare(const osg::StateAttribute& other) const override;
     void apply(osg::State&) const override {}
@@ -62,9 +63,9 @@ private:
     std::size_t _slot = 0;
     std::size_t _instance = 0;
     std::size_t _instanceCount = 1;
-    std::vector<InstanceTransform> _transforms;
+    InstanceLists _lists;
     std::shared_ptr<const PlacedInstances> _placed;
-    std::uint64_t _serial = 0;
+    std::uint64_t _serial = 0; ///< of setInstanced(), for compare(); 0: none
     int _level = allTriangles;
 };
 

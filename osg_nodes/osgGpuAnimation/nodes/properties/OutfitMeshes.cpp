@@ -150,6 +150,13 @@ Result<void> OutfitMeshes::check(const osg::Group& crowd, const AnimationSet& se
         std::find(variants.begin(), variants.end(), outfit->getVariant()) == variants.end())
         return Error{subject + "there is no material variant \"" + outfit->getVariant() + "\"; the variants are " +
                      quotedList({variants.begin(), variants.end()})};
+    for (const auto& [joint, scale] : outfit->getJointScales())
+    {
+        if (const auto known = set.skeleton().jointNamed(joint); !known) return Error{subject + known.error().message};
+        for (int axis = 0; axis < 3; ++axis)
+            if (!(scale[axis] >= 0.1f && scale[axis] <= 10.0f))
+                return Error{subject + "the scale of joint \"" + joint + "\" is not in [0.1, 10]"};
+    }
     const auto unknown = [&](const std::string& material) {
         return Error{subject + "there is no material \"" + material + "\"; the materials are " + quotedList(materials)};
     };
@@ -191,20 +198,19 @@ Result<void> OutfitMeshes::add(const osg::Group& crowd, const AnimationSet& set,
     return {};
 }
 
-Result<void> OutfitMeshes::replace(const osg::Group& crowd, const AnimationSet& set, const Outfit* outfit, Outfit* by)
+Result<void> OutfitMeshes::replace(const osg::Group& crowd, const AnimationSet& set, Number number, Outfit* by)
 {
-    const Number number = numberOf(outfit);
-    if (number == 0) return Error{"the crowd has no such outfit"};
-    if (by != outfit && numberOf(by) != 0) return Error{"the crowd has the outfit \"" + by->getName() + "\" already"};
+    if (by != outfit(number) && numberOf(by) != 0)
+        return Error{"the crowd has the outfit \"" + by->getName() + "\" already"};
     if (const Result<void> checked = check(crowd, set, by); !checked) return checked;
     _outfits[number - 1u] = by;
     make(crowd);
     return {};
 }
 
-void OutfitMeshes::remove(const osg::Group& crowd, const Outfit* outfit)
+void OutfitMeshes::remove(const osg::Group& crowd, Number number)
 {
-    if (const Number number = numberOf(outfit); number != 0) _outfits[number - 1u] = nullptr;
+    _outfits[number - 1u] = nullptr;
     while (!_outfits.empty() && !_outfits.back())
         _outfits.pop_back();
     make(crowd);
@@ -217,9 +223,7 @@ bool OutfitMeshes::update(const osg::Group& crowd)
     forEachMesh(crowd,
                 [&](const SkinnedGeometry& mesh)
                 {
-                    const Source present{const_cast<SkinnedGeometry*>(&mesh),
-                                         const_cast<osg::StateSet*>(mesh.getStateSet()), mesh.getNodeMask()};
-                    isSame = isSame && count < _sources.size() && _sources[count] == present;
+                    isSame = isSame && count < _sources.size() && _sources[count].isOf(mesh);
                     ++count;
                 });
     if (isSame && count == _sources.size()) return false;

@@ -39,9 +39,9 @@ public:
 
     /// Errors: see CrowdOutfits::add().
     Result<void> add(const osg::Group& crowd, const AnimationSet& set, Outfit* outfit);
-    /// Errors: those of add(); there is no such outfit.
-    Result<void> replace(const osg::Group& crowd, const AnimationSet& set, const Outfit* outfit, Outfit* by);
-    void remove(const osg::Group& crowd, const Outfit* outfit);
+    /// number: not 0. Errors: those of add().
+    Result<void> replace(const osg::Group& crowd, const AnimationSet& set, Number number, Outfit* by);
+    void remove(const osg::Group& crowd, Number number); ///< number: not 0
     /// Makes the meshes unless the crowd still has those of the last call. True: it made some.
     bool update(const osg::Group& crowd);
     /// Lets merged meshes show the parts of each outfit. levels: of meshes(); null: none.
@@ -65,9 +65,9 @@ private:
         osg::ref_ptr<osg::StateSet> state;
         osg::Node::NodeMask mask;
 
-        bool operator==(const Source& other) const
+        bool isOf(const SkinnedGeometry& now) const
         {
-            return mesh == other.mesh && state == other.state && mask == other.mask;
+            return mesh == &now && state == now.getStateSet() && mask == now.getNodeMask();
         }
     };
     struct Shown

@@ -4,7 +4,6 @@
 #include <osgGpuAnimation/nodes/studio/KeyShadow.h>
 
 #include <osg/ClipPlane>
-#include <osg/CullFace>
 #include <osg/Depth>
 #include <osg/PolygonMode>
 #include <osg/Program>

@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Usage: tests/forced.sh FOLDER_OF_TEST_PROGRAMS [PROGRAM...]
+# Runs the GL tests (default: of all programs) as on lesser drivers, which Mesa's software renderer plays:
+#     texels   buffer textures of 65,536 texels, the least of OpenGL 3.1 and later
+#     gl33     OpenGL 3.3 without base instances and time stamps, in both profiles
+# Exit status 0: all passed.
+set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
+
+folder=$1
+programs=("${@:2}")
+[ ${#programs[@]} -gt 0 ] || programs=("${gl_tests[@]}")
+export OSGGPUANIMATION_REQUIRE_GL=1
+faults=0
+
+# run WAY FILTER VARIABLE...
+run()
+{
+    local program log
+    log=$(mktemp)
+    for program in "${programs[@]}"; do
+        if ! env "${@:3}" "$folder/$program" --gtest_filter="$2" >"$log" 2>&1; then
+            faults=$((faults + 1))
+            cat "$log"
+        fi
+        echo "$1, $program: $(grep -aE '^\[  (PASSED|FAILED)  \] [0-9]+ test' "$log" | paste -sd' ')"
+    done
+    rm -f "$log"
+}
+
+# glslangValidator reads the same programs in each way.
+gl='*GLTest*-ShaderLanguageGLTest.*'
+run texels "$gl" OSGGPUANIMATION_MAX_TEXELS=65536
+# Mesa makes a context of the one profile where the other one is asked for.
+lacks=MESA_EXTENSION_OVERRIDE='-GL_ARB_base_instance -GL_ARB_timer_query -GL_ARB_buffer_storage'
+run gl33 "$gl:*Core*:Profile*" MESA_GL_VERSION_OVERRIDE=3.3COMPAT "$lacks"
+run gl33core '*Core*GLTest*:*Profile*GLTest*' MESA_GL_VERSION_OVERRIDE=3.3 "$lacks"
+[ $faults -eq 0 ]

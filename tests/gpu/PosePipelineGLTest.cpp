@@ -522,7 +522,7 @@ TEST_F(GlObjectsOfPosesGLTest, listsOfInstancesKeepTheirContent)
             InstanceLists joined;
             for (const std::size_t number : numbers)
                 joined.push_back(listOf[number]);
-            const BufferTexture& buffer = *lists.joined(joined).buffer;
+            const BufferTexture& buffer = *lists.joined(joined, true).buffer;
             std::vector<InstanceTransform> found(numbers.front() + (numbers.size() > 1 ? numbers.back() : 0));
             gl.glBindBuffer(GL_ARRAY_BUFFER, buffer.buffer());
             gl.glGetBufferSubData(GL_ARRAY_BUFFER, 0, static_cast<GLsizeiptr>(found.size() * sizeof found[0]),

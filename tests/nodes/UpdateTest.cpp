@@ -5,6 +5,7 @@
 #include <osg/AnimationPath>
 
 #include <functional>
+#include <utility>
 
 // The update traversal advances characters and crowds, whatever callbacks an application sets.
 
@@ -126,6 +127,52 @@ TEST(UpdateTest, callbacksRunAfterTheUpdate)
     EXPECT_DOUBLE_EQ(first->time, 0.5);
     EXPECT_DOUBLE_EQ(second->time, 0.5);
     EXPECT_DOUBLE_EQ(character->getMatrix().getTrans().x(), 5.0) << "the path moves the character";
+}
+
+TEST(UpdateTest, callbacksBelowACharacterRunThatWereAddedLater)
+{
+    struct OfNode : osg::NodeCallback
+    {
+        explicit OfNode(int& calls) : calls(calls) {}
+        void operator()(osg::Node* node, osg::NodeVisitor* visitor) override
+        {
+            ++calls;
+            traverse(node, visitor);
+        }
+        int& calls;
+    };
+    struct OfState : osg::StateSet::Callback
+    {
+        explicit OfState(int& calls) : calls(calls) {}
+        void operator()(osg::StateSet*, osg::NodeVisitor*) override { ++calls; }
+        int& calls;
+    };
+    int calls = 0;
+    const osg::ref_ptr<osg::Group> below = new osg::Group;
+    const std::pair<const char*, std::function<void(AnimatedCharacter&)>> places[] = {
+        {"a mesh", [&](AnimatedCharacter& character) { character.getChild(0)->setUpdateCallback(new OfNode(calls)); }},
+        {"its state", [&](AnimatedCharacter& character)
+         { character.getChild(0)->getOrCreateStateSet()->setUpdateCallback(new OfState(calls)); }},
+        {"the character's state",
+         [&](AnimatedCharacter& character) { character.getOrCreateStateSet()->setUpdateCallback(new OfState(calls)); }},
+        {"a node below another",
+         [&](AnimatedCharacter& character)
+         {
+             character.addChild(below);
+             below->addChild(new osg::Group);
+             below->getChild(0)->setUpdateCallback(new OfNode(calls));
+         }},
+    };
+    for (const auto& [name, add] : places)
+    {
+        const osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+        UpdateVisits updates;
+        updates.visit(*character, 1.0);
+        add(*character);
+        calls = 0;
+        updates.visit(*character, 1.5);
+        EXPECT_EQ(calls, 1) << name;
+    }
 }
 
 TEST(UpdateTest, aMaskedCharacterWaitsAndOtherVisitorsDoNotAdvance)

@@ -44,7 +44,7 @@ void evaluate(const AnimationSet& set, const PoseInstruction& instruction, const
 /// A pose as a PoseBatch keeps it.
 struct BatchedPose
 {
-    const BlendSample* samples = nullptr;
+    const BlendSample* samples = nullptr; ///< see PoseInstruction
     std::size_t sampleCount = 0; ///< at most PoseInstruction::maxSamples
     /// The posed keyframes; BlendSample::keyframe of a posed sample is an index of these.
     const std::shared_ptr<const PosedKeyframe>* posed = nullptr;

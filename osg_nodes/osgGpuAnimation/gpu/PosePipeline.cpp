@@ -83,8 +83,10 @@ std::size_t maxTexelsOfContext()
 {
     GLint limit = 0;
     glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &limit);
+    constexpr GLint leastOfAll = 65536; // OpenGL 3.3, table 6.43
     const char* wanted = std::getenv("OSGGPUANIMATION_MAX_TEXELS");
-    return static_cast<std::size_t>(std::max(wanted ? std::min(limit, std::atoi(wanted)) : limit, 0));
+    if (wanted) limit = std::min(limit, std::max(std::atoi(wanted), leastOfAll));
+    return static_cast<std::size_t>(std::max(limit, 0));
 }
 
 } // namespace

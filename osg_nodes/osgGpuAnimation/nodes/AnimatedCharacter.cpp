@@ -336,8 +336,8 @@ void AnimatedCharacter::accept(osg::NodeVisitor& visitor)
     osg::MatrixTransform::accept(visitor);
 }
 
-/// As the traversal of a CullVisitor for a character that is drawn together with others. False, without an effect: the
-/// visitor must traverse it.
+/// As the traversal of a CullVisitor for a character that is drawn together with others. False: the visitor must
+/// traverse it.
 bool AnimatedCharacter::cullTogether(osgUtil::CullVisitor& visitor)
 {
     if (!_isDrawnTogether || getCullCallback() || getStateSet() || getReferenceFrame() != RELATIVE_RF) return false;
@@ -345,9 +345,15 @@ bool AnimatedCharacter::cullTogether(osgUtil::CullVisitor& visitor)
         !isPlain<osgUtil::CullVisitor>(visitor) || getNumChildren() == 0 || getAnimationSet().paletteSize() == 0)
         return false;
     if (visitor.isCulled(*this)) return true;
-    const DepthPass pass(visitor);
-    const ViewLightsScope lights(visitor);
-    return PoseStage::drawFromAbove(visitor, drawn(), getMatrix());
+    visitor.pushCurrentMask();
+    bool isDrawn = false;
+    {
+        const DepthPass pass(visitor);
+        const ViewLightsScope lights(visitor);
+        isDrawn = PoseStage::drawFromAbove(visitor, drawn(), getMatrix());
+    }
+    visitor.popCurrentMask();
+    return isDrawn;
 }
 
 void AnimatedCharacter::traverse(osg::NodeVisitor& visitor)

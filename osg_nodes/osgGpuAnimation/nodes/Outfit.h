@@ -72,8 +72,8 @@ public:
     const std::map<std::string, osg::ref_ptr<osg::Image>>& getPictures() const { return _pictures; } ///< by material
 
     /// Scales a joint along its own axes, with all joints below it, whatever clips and layers set for its scale. Such
-    /// instances share no poses, see CharacterMeshes::setPixelError(). scale: of its scale at rest; each component in
-    /// [0.1, 10].
+    /// instances share no poses, see CharacterMeshes::setPixelError(), and have their rest proportions while a
+    /// controller mixes PoseInstruction::maxSamples samples. scale: of its scale at rest; each component in [0.1, 10].
     void setJointScale(const std::string& joint, const osg::Vec3& scale) { _jointScales[joint] = scale; }
     const std::map<std::string, osg::Vec3>& getJointScales() const { return _jointScales; } ///< by joint
 

@@ -73,7 +73,6 @@ void CharacterDraws::begin(DrawnInstances* counted)
     _looksByHash.clear();
     _lastLook = nullptr;
     _groups.clear();
-    _lastGroup = nullptr;
     _lastScale.reset();
     _counted = counted;
 }
@@ -150,7 +149,7 @@ void CharacterDraws::draw(osgUtil::CullVisitor& visitor, LodView& view, const Dr
 }
 
 bool CharacterDraws::drawFromAbove(osgUtil::CullVisitor& visitor, LodView& view, const DrawnCharacter& character,
-                                   const osg::Matrixd& toParent, PoseFrame& frame)
+                                   const osg::Matrixd& toParent, const osg::Matrixd& toEye, PoseFrame& frame)
 {
     Look& look = lookOf(visitor, character);
     if (look.shared.empty() || !look.others.empty() || !canDrawTogether(visitor)) return false;
@@ -159,7 +158,7 @@ bool CharacterDraws::drawFromAbove(osgUtil::CullVisitor& visitor, LodView& view,
     Group& group = groupOf(visitor, character.controller.set(), pose.slot, level);
     const auto isKnown = [&](const SkinnedGeometry* mesh) { return group.knows(mesh); };
     if (!group.isOpen(look) && !std::all_of(look.shared.begin(), look.shared.end(), isKnown)) return false;
-    add(visitor, group, look, frame, toParent * *visitor.getModelViewMatrix(), pose.instance);
+    add(visitor, group, look, frame, toEye, pose.instance);
     return true;
 }
 
@@ -169,10 +168,11 @@ int CharacterDraws::levelOf(osgUtil::CullVisitor& visitor, LodView& view, const 
 {
     if (!(character.pixelError > 0.0f) || !look.box.valid()) return LodLevels::allTriangles;
     if (!look.range) look.range = LodRange(character.node, character.controller.set());
-    const osg::RefMatrix* toEye = visitor.getModelViewMatrix();
-    if (!_lastScale || _lastScale->toEye != toEye || _lastScale->look != &look ||
-        _lastScale->pixelError != character.pixelError)
-        _lastScale = {toEye, &look, character.pixelError, LodScale(visitor, view, character.pixelError, *look.range)};
+    const osg::RefMatrix *toEye = visitor.getModelViewMatrix(), *projection = visitor.getProjectionMatrix();
+    if (!_lastScale || _lastScale->toEye != toEye || _lastScale->projection != projection ||
+        _lastScale->look != &look || _lastScale->pixelError != character.pixelError)
+        _lastScale = {toEye, projection, &look, character.pixelError,
+                      LodScale(visitor, view, character.pixelError, *look.range)};
     const osg::Vec3d centre = osg::Vec3d(look.box.center()) * toVisitor;
     const float scale = maxScale(toAffine(toVisitor));
     const LodScale& lod = _lastScale->scale;
@@ -182,24 +182,19 @@ int CharacterDraws::levelOf(osgUtil::CullVisitor& visitor, LodView& view, const 
 
 bool CharacterDraws::Group::isSame(const Group& other) const
 {
-    return state == other.state && bin == other.bin && projection == other.projection && set == other.set &&
-           slot == other.slot && level == other.level;
+    return bin == other.bin && projection == other.projection && set == other.set && slot == other.slot &&
+           level == other.level;
 }
 
 CharacterDraws::Group& CharacterDraws::groupOf(osgUtil::CullVisitor& visitor, const AnimationSet& set, std::size_t slot,
                                                int level)
 {
-    const Group sought{visitor.getCurrentStateGraph(),
-                       visitor.getCurrentRenderBin(),
-                       visitor.getProjectionMatrix(),
-                       &set,
-                       slot,
-                       level};
-    if (_lastGroup && _lastGroup->isSame(sought)) return *_lastGroup;
-    auto known = std::find_if(_groups.begin(), _groups.end(),
+    const Group sought{visitor.getCurrentRenderBin(), visitor.getProjectionMatrix(), &set, slot, level};
+    std::vector<std::unique_ptr<Group>>& groups = _groups[visitor.getCurrentStateGraph()];
+    auto known = std::find_if(groups.begin(), groups.end(),
                               [&](const std::unique_ptr<Group>& group) { return group->isSame(sought); });
-    if (known == _groups.end()) known = _groups.insert(known, std::make_unique<Group>(sought));
-    return *(_lastGroup = known->get());
+    if (known == groups.end()) known = groups.insert(known, std::make_unique<Group>(sought));
+    return **known;
 }
 
 /// Adds an instance, unless it is behind the near plane or nowhere: the tests of CullVisitor::apply(Drawable&).

@@ -84,12 +84,12 @@ public:
     void draw(osgUtil::CullVisitor& visitor, LodView& view, const DrawnCharacter& character, PoseFrame& frame,
               SubmittedPose pose);
     /// The same from the space above a character that is in view, if others have drawn all its meshes. toParent: its
-    /// matrix. False, without an effect: call draw().
+    /// matrix. toEye: its model-view matrix, finite. False: nothing is drawn yet, call draw().
     bool drawFromAbove(osgUtil::CullVisitor& visitor, LodView& view, const DrawnCharacter& character,
-                       const osg::Matrixd& toParent, PoseFrame& frame);
+                       const osg::Matrixd& toParent, const osg::Matrixd& toEye, PoseFrame& frame);
 
 private:
-    /// The children that several characters of a set have.
+    /// The children that several characters of a set have: they look alike.
     struct Look
     {
         std::size_t number; ///< in the traversal
@@ -106,7 +106,6 @@ private:
     /// Characters that differ in poses, placements and looks only.
     struct Group
     {
-        const osgUtil::StateGraph* state;
         const osgUtil::RenderBin* bin;
         const osg::RefMatrix* projection;
         const AnimationSet* set;
@@ -117,6 +116,7 @@ private:
         std::unordered_map<const osg::Node*, PaletteBinding*> bindings{}; ///< of the meshes' draws; null: drawn once
 
         bool isSame(const Group& other) const;
+        /// True if the look has a list of instances, which the draws of all its meshes show.
         bool isOpen(const Look& look) const
         {
             return look.number < instances.size() && instances[look.number] != nullptr;
@@ -126,7 +126,8 @@ private:
     /// The scale of the last selected level, for siblings.
     struct LastScale
     {
-        const osg::RefMatrix* toEye = nullptr;
+        osg::ref_ptr<const osg::RefMatrix> toEye;
+        osg::ref_ptr<const osg::RefMatrix> projection;
         const Look* look = nullptr;
         float pixelError = 0.0f;
         LodScale scale;
@@ -145,8 +146,7 @@ private:
     std::vector<std::unique_ptr<Look>> _looks; ///< of the traversal
     std::unordered_multimap<std::size_t, Look*> _looksByHash;
     Look* _lastLook = nullptr;
-    std::vector<std::unique_ptr<Group>> _groups; ///< of the traversal
-    Group* _lastGroup = nullptr;
+    std::unordered_map<const osgUtil::StateGraph*, std::vector<std::unique_ptr<Group>>> _groups; ///< of the traversal
     std::optional<LastScale> _lastScale;
     DrawnInstances* _counted = nullptr; ///< the PoseStage's
 };

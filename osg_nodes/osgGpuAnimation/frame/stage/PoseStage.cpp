@@ -74,8 +74,10 @@ void PoseStage::draw(osgUtil::CullVisitor& visitor, const DrawnCharacter& charac
 bool PoseStage::drawFromAbove(osgUtil::CullVisitor& visitor, const DrawnCharacter& character,
                               const osg::Matrixd& toParent)
 {
+    const osg::Matrixd toEye = toParent * *visitor.getModelViewMatrix();
+    if (!isFinite(toEye)) return true;
     PoseStage& stage = current(visitor);
-    return stage._draws.drawFromAbove(visitor, stage._lodView, character, toParent, *stage._frame);
+    return stage._draws.drawFromAbove(visitor, stage._lodView, character, toParent, toEye, *stage._frame);
 }
 
 PoseFrame& PoseStage::frame(osgUtil::CullVisitor& visitor)

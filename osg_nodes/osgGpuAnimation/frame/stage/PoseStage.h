@@ -21,7 +21,7 @@ public:
     /// Called by a visible character during cull: submits its pose and draws its children.
     static void draw(osgUtil::CullVisitor& visitor, const DrawnCharacter& character);
     /// The same from the space above the character, at a fraction of the cost, for one that is drawn with others.
-    /// toParent: its matrix. False, without an effect: it is not, so call draw() in its own space.
+    /// toParent: its matrix. False: it is not, so call draw() in its own space.
     static bool drawFromAbove(osgUtil::CullVisitor& visitor, const DrawnCharacter& character,
                               const osg::Matrixd& toParent);
     /// The frame of the visitor's cull, for crowds, which submit whole batches.

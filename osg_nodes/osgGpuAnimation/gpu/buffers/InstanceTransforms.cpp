@@ -18,17 +18,26 @@ InstanceTransformBuffers& InstanceTransformBuffers::of(osg::State& state)
     return *osg::get<InstanceTransformBuffers>(state.getContextID());
 }
 
-const InstanceTransformBuffers::Joined& InstanceTransformBuffers::joined(const InstanceLists& lists)
+InstanceTransformBuffers::Joined& InstanceTransformBuffers::find(const InstanceLists& lists)
 {
-    for (const Joined& known : _joined)
+    for (Joined& known : _joined)
         if (known.lists == lists) return known;
     Joined& joined = _joined[_oldest];
     _oldest = (_oldest + 1) % _joined.size();
     joined.lists = lists;
+    joined.isUploaded = false;
     joined.transforms.clear();
     for (const auto& list : lists)
         joined.transforms.insert(joined.transforms.end(), list->begin(), list->end());
-    joined.buffer->upload(joined.transforms.data(), joined.transforms.size() * sizeof(InstanceTransform));
+    return joined;
+}
+
+const InstanceTransformBuffers::Joined& InstanceTransformBuffers::joined(const InstanceLists& lists, bool uploads)
+{
+    Joined& joined = find(lists);
+    if (uploads && !joined.isUploaded)
+        joined.buffer->upload(joined.transforms.data(), joined.transforms.size() * sizeof(InstanceTransform));
+    joined.isUploaded = joined.isUploaded || uploads;
     return joined;
 }
 
@@ -44,6 +53,7 @@ void InstanceTransformBuffers::discardAllGLObjects()
     for (Joined& joined : _joined)
     {
         joined.buffer->discard();
+        joined.isUploaded = false;
         joined.lists.clear();
     }
 }

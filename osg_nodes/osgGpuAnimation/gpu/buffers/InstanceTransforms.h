@@ -42,11 +42,12 @@ public:
     {
         InstanceLists lists;
         std::vector<InstanceTransform> transforms;
-        std::unique_ptr<BufferTexture> buffer;
+        std::unique_ptr<BufferTexture> buffer; ///< has the transforms if isUploaded
+        bool isUploaded = false;
     };
 
-    /// The lists, uploaded at the first call; they do not change any more. Valid until two others are asked for.
-    const Joined& joined(const InstanceLists& lists);
+    /// The lists, which do not change any more. Valid until two others are asked for. uploads: the draw reads them.
+    const Joined& joined(const InstanceLists& lists, bool uploads);
 
     void flushDeletedGLObjects(double, double&) override {}
     void flushAllDeletedGLObjects() override {}
@@ -57,6 +58,8 @@ protected:
     ~InstanceTransformBuffers() override = default;
 
 private:
+    Joined& find(const InstanceLists& lists);
+
     std::array<Joined, 2> _joined;
     std::size_t _oldest = 0;
 };

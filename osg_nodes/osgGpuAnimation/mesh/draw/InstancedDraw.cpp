@@ -160,8 +160,8 @@ InstanceRuns::InstanceRuns(osg::State& state, const PosePipeline& pipeline, cons
     if (binding.getPlaced()) findPlaced();
     if (!_isSkinned) _view = state.getModelViewMatrix();
     if (!binding.isInstanced()) return;
-    _transforms = &InstanceTransformBuffers::of(state).joined(binding.getInstanceLists());
     _areAttributes = program && program->getAttribLocation("poseInstancePose") == POSE_INSTANCE_POSE_LOCATION;
+    _transforms = &InstanceTransformBuffers::of(state).joined(binding.getInstanceLists(), _areAttributes);
 }
 
 InstanceRuns::~InstanceRuns()

@@ -45,7 +45,7 @@ void evaluate(const AnimationSet& set, const PoseInstruction& instruction, const
 struct BatchedPose
 {
     const BlendSample* samples = nullptr; ///< see PoseInstruction
-    std::size_t sampleCount = 0; ///< at most PoseInstruction::maxSamples
+    std::size_t sampleCount = 0;          ///< at most PoseInstruction::maxSamples
     /// The posed keyframes; BlendSample::keyframe of a posed sample is an index of these.
     const std::shared_ptr<const PosedKeyframe>* posed = nullptr;
     /// One per constraint of the set, already moved by rootToModel; null: none has an effect.

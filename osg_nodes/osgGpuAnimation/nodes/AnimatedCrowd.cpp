@@ -384,8 +384,7 @@ void AnimatedCrowd::prepareSharedPoses()
     const bool isOn = _meshes.getPixelError() > 0.0f && getAnimationSet().paletteSize() > 0;
     if (isOn && (!_sharedPoses || !_sharedPoses->isOf(_meshes.drawn()))) // kept for the next pixel error
         _sharedPoses = std::make_unique<SharedPoses>(_meshes.drawn(), getSharedAnimationSet());
-    // While levels are made, frames draw all triangles and exact poses; from then on, both.
-    if (_sharedPoses) _sharedPoses->update(isOn && !_meshes._task);
+    if (_sharedPoses) _sharedPoses->update(isOn && !_meshes._task); // no waiting while levels are being made
 }
 
 void AnimatedCrowd::releaseGLObjects(osg::State* state) const

@@ -1,30 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "GpuClock.h"
 
-#include <string>
-
-#ifndef GL_TIMESTAMP
-#define GL_TIMESTAMP 0x8E28
-#endif
-#ifndef GL_QUERY_COUNTER_BITS_ARB
-#define GL_QUERY_COUNTER_BITS_ARB 0x8864
-#endif
+#include <osgGpuAnimation/gpu/detail/Renderer.h>
+#include <osgGpuAnimation/gpu/detail/TimeStamps.h>
 
 namespace osgGpuAnimation::benchmark
 {
 
-GpuClock::GpuClock(osg::State& state) : _gl(*state.get<osg::GLExtensions>())
+GpuClock::GpuClock(osg::State& state)
+    : _gl(*state.get<osg::GLExtensions>()), _bits(isSoftwareRenderer() ? 0 : timeStampBits(_gl))
 {
-    if (_gl.isARBTimerQuerySupported && !isSoftware())
-        _gl.glGetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS_ARB, &_bits);
-}
-
-bool GpuClock::isSoftware()
-{
-    const std::string renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-    for (const char* name : {"llvmpipe", "softpipe", "SwiftShader", "Basic Render"})
-        if (renderer.find(name) != std::string::npos) return true;
-    return false;
 }
 
 GpuClock::~GpuClock()

@@ -20,9 +20,9 @@ public:
     GpuClock(const GpuClock&) = delete;
     GpuClock& operator=(const GpuClock&) = delete;
 
-    /// True for llvmpipe and the like, whose time stamps say nothing of feedback: the calling thread computes it.
-    static bool isSoftware();
-    bool isThere() const { return _bits > 0; } ///< false: the driver has no time stamps, or isSoftware()
+    /// False: the driver has no time stamps, or is a software renderer, whose time stamps say nothing of feedback: the
+    /// calling thread computes it.
+    bool isThere() const { return _bits > 0; }
     void begin() { stamp(); }
     void end() { stamp(); }
     /// The sum in seconds since the last call; 0 without time stamps. Waits for the GPU.
@@ -32,7 +32,7 @@ private:
     void stamp();
 
     osg::GLExtensions& _gl;
-    GLint _bits = 0;
+    GLint _bits;
     std::vector<GLuint> _queries; ///< of all stamps so far, in turns begin and end
     std::vector<GLuint> _spare;
 };

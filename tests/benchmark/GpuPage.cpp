@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "GpuPage.h"
 
+#include <osgGpuAnimation/gpu/detail/Renderer.h>
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -33,7 +35,7 @@ constexpr double microseconds = 1e6;
 } // namespace
 
 GpuPage::GpuPage(osg::State& state, int rounds, double seconds)
-    : _state(state), _deciding(GpuClock::isSoftware() ? &Line::cpu : &Line::wall), _rounds(rounds), _seconds(seconds)
+    : _state(state), _deciding(isSoftwareRenderer() ? &Line::cpu : &Line::wall), _rounds(rounds), _seconds(seconds)
 {
 }
 

@@ -4,6 +4,7 @@
 #include "StagedViewer.h"
 
 #include <osgGpuAnimation/gpu/buffers/BufferTexture.h>
+#include <osgGpuAnimation/gpu/detail/Renderer.h>
 #include <osgGpuAnimation/gpu/FeedbackPass.h>
 #include <osgGpuAnimation/math/AffineMatrix.h>
 
@@ -75,7 +76,7 @@ double copySpeedOf(osg::State& state, std::size_t bytes)
     for (int round = 0; round < 5; ++round)
     {
         const Spent spent = inARow(4, clock, step);
-        seconds.push_back(spent.gpu > 0.0 ? spent.gpu : GpuClock::isSoftware() ? spent.cpu : spent.wall);
+        seconds.push_back(spent.gpu > 0.0 ? spent.gpu : isSoftwareRenderer() ? spent.cpu : spent.wall);
     }
     gl.glBindBuffer(GL_COPY_READ_BUFFER, 0);
     gl.glBindBuffer(GL_COPY_WRITE_BUFFER, 0);

@@ -68,14 +68,7 @@ void measureOutfits(const Subject& subject, Run& run)
         dressed->getMeshes().waitForLevels();
         std::vector<osg::ref_ptr<osg::Node>> scenes{alike, dressed};
         if (pixelError == 0.0f) scenes.emplace_back(asCrowds(*alike, hidden));
-        Viewers viewers;
-        for (const osg::ref_ptr<osg::Node>& scene : scenes)
-        {
-            viewers.push_back(std::make_unique<StagedViewer>(scene, alike->getBound(), 1000, 600));
-            const osg::BoundingSphere bound = alike->getBound();
-            viewers.back()->lookFrom(bound.center() + osg::Vec3d(0.0, -1.6, 0.9) * bound.radius(), bound.center(),
-                                     35.0);
-        }
+        const Viewers viewers = viewersFromAbove(scenes, alike->getBound());
         const std::vector<Costs> costs = race(viewers, run.rounds);
         ratio(count, "24 outfits, update + cull", costs[1].updateAndCull, "all alike", costs[0].updateAndCull, 1.2);
         if (pixelError > 0.0f)

@@ -24,13 +24,7 @@ void measureSeparate(const Subject& subject, Run& run)
                 taken(dressed.characters[i]->getMeshes().setVisible(part, false));
         scenes.push_back(dressed.root);
     }
-    Viewers viewers;
-    const osg::BoundingSphere bound = crowd->getBound();
-    for (const osg::ref_ptr<osg::Node>& scene : scenes)
-    {
-        viewers.push_back(std::make_unique<StagedViewer>(scene, bound, 1000, 600));
-        viewers.back()->lookFrom(bound.center() + osg::Vec3d(0.0, -1.6, 0.9) * bound.radius(), bound.center(), 35.0);
-    }
+    const Viewers viewers = viewersFromAbove(scenes, crowd->getBound());
     const std::vector<Costs> costs = race(viewers, run.rounds);
     const char* const names[] = {"one crowd", "separate, alike", "separate, 24 sets of hidden parts"};
     for (std::size_t scene = 1; scene < scenes.size(); ++scene)

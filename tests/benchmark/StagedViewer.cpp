@@ -169,6 +169,17 @@ Viewers viewersOf(const std::vector<osg::ref_ptr<osg::Node>>& scenes, const osg:
     return viewers;
 }
 
+Viewers viewersFromAbove(const std::vector<osg::ref_ptr<osg::Node>>& scenes, const osg::BoundingSphere& sight)
+{
+    Viewers viewers;
+    for (const osg::ref_ptr<osg::Node>& scene : scenes)
+    {
+        viewers.push_back(std::make_unique<StagedViewer>(scene, sight, 1000, 600));
+        viewers.back()->lookFrom(sight.center() + osg::Vec3d(0.0, -1.6, 0.9) * sight.radius(), sight.center(), 35.0);
+    }
+    return viewers;
+}
+
 std::vector<Costs> race(const Viewers& viewers, int rounds)
 {
     std::vector<Costs> costs(viewers.size());

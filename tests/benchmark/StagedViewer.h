@@ -94,6 +94,9 @@ using Viewers = std::vector<std::unique_ptr<StagedViewer>>;
 /// One viewer of 64x64 pixels a scene; all show the same sight.
 Viewers viewersOf(const std::vector<osg::ref_ptr<osg::Node>>& scenes, const osg::BoundingSphere& sight);
 
+/// The same of 1000x600 pixels, with perspective from before and above.
+Viewers viewersFromAbove(const std::vector<osg::ref_ptr<osg::Node>>& scenes, const osg::BoundingSphere& sight);
+
 /// The costs of the frames of one viewer.
 struct Costs
 {

@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/gpu/buffers/AnimationBuffers.h>
 #include <osgGpuAnimation/gpu/buffers/PosePalette.h>
+#include <osgGpuAnimation/gpu/detail/Renderer.h>
 #include <osgGpuAnimation/gpu/passes/CpuEvaluation.h>
 #include <osgGpuAnimation/gpu/passes/FusedEvaluation.h>
 #include <osgGpuAnimation/gpu/passes/SeparateEvaluation.h>
@@ -63,19 +64,11 @@ std::size_t widestPassOf(const AnimationSet& set)
 constexpr std::size_t separateDraws = 3;
 constexpr std::size_t measuredLevels = 8; ///< of entriesWorthADraw(); an entry of the separate form walks to the root
 
-std::string renderer()
-{
-    const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
-    return name ? name : "";
-}
-
 /// Measured with sets of 50 joints in 8 and 16 levels. NVIDIA H200: separate 73 and 75 µs and 16 ns a joint, fused 200
 /// and 330 µs and 7 ns. llvmpipe: 9 µs and 100 ns, 21 µs and 30 ns.
 std::size_t entriesWorthADraw()
 {
-    for (const char* software : {"llvmpipe", "softpipe", "SwiftShader", "Basic Render"})
-        if (renderer().find(software) != std::string::npos) return 32;
-    return 2560;
+    return isSoftwareRenderer() ? 32 : 2560;
 }
 
 /// Texels of a buffer texture.
@@ -236,7 +229,7 @@ bool PosePipeline::Parts::isOnCpu(osg::State& state)
         const FeedbackScope scope(state, context.vertexArrays.of(state).empty);
         canWriteFeedback = FeedbackPass::canWrite(*context.gl);
         if (!*canWriteFeedback)
-            OSG_WARN << "osgGpuAnimation: transform feedback of " << renderer()
+            OSG_WARN << "osgGpuAnimation: transform feedback of " << rendererName()
                      << " does not write what shaders compute, so the CPU computes all poses, which is slower"
                      << std::endl;
     }

@@ -115,7 +115,7 @@ CharacterDraws::Look CharacterDraws::newLook(const osgUtil::CullVisitor& visitor
         look.children.push_back(child);
         SkinnedGeometry* mesh = asShared(child);
         if (!mesh)
-            look.others.push_back(child);
+            look.hasOthers = true;
         else if (visitor.validNodeMask(*mesh))
             look.shared.push_back(mesh);
     }
@@ -152,7 +152,7 @@ bool CharacterDraws::drawFromAbove(osgUtil::CullVisitor& visitor, LodView& view,
                                    const osg::Matrixd& toParent, const osg::Matrixd& toEye, PoseFrame& frame)
 {
     Look& look = lookOf(visitor, character);
-    if (look.shared.empty() || !look.others.empty() || !canDrawTogether(visitor)) return false;
+    if (look.shared.empty() || look.hasOthers || !canDrawTogether(visitor)) return false;
     const int level = levelOf(visitor, view, character, look, toParent);
     const SubmittedPose pose = frame.submit(character.node, character.controller, character.rootMatrix);
     Group& group = groupOf(visitor, character.controller.set(), pose.slot, level);
@@ -180,20 +180,14 @@ int CharacterDraws::levelOf(osgUtil::CullVisitor& visitor, LodView& view, const 
                                             scale * maxScale(character.rootMatrix)));
 }
 
-bool CharacterDraws::Group::isSame(const Group& other) const
-{
-    return bin == other.bin && projection == other.projection && set == other.set && slot == other.slot &&
-           level == other.level;
-}
-
 CharacterDraws::Group& CharacterDraws::groupOf(osgUtil::CullVisitor& visitor, const AnimationSet& set, std::size_t slot,
                                                int level)
 {
-    const Group sought{visitor.getCurrentRenderBin(), visitor.getProjectionMatrix(), &set, slot, level};
+    const GroupKey key{visitor.getCurrentRenderBin(), visitor.getProjectionMatrix(), &set, slot, level};
     std::vector<std::unique_ptr<Group>>& groups = _groups[visitor.getCurrentStateGraph()];
     auto known = std::find_if(groups.begin(), groups.end(),
-                              [&](const std::unique_ptr<Group>& group) { return group->isSame(sought); });
-    if (known == groups.end()) known = groups.insert(known, std::make_unique<Group>(sought));
+                              [&](const std::unique_ptr<Group>& group) { return group->key == key; });
+    if (known == groups.end()) known = groups.insert(known, std::make_unique<Group>(Group{key}));
     return **known;
 }
 
@@ -229,7 +223,7 @@ std::shared_ptr<std::vector<InstanceTransform>> CharacterDraws::open(osgUtil::Cu
         PaletteBinding*& binding = known->second;
         if (!binding)
         {
-            const DrawState placed = frame.instancedState(*group.set, group.slot, group.level);
+            const DrawState placed = frame.instancedState(*group.key.set, group.key.slot, group.key.level);
             binding = placed.binding;
             if (_counted) _counted->add(*mesh, *binding);
             visitor.pushStateSet(placed.stateSet);

@@ -97,25 +97,35 @@ private:
         osg::Node::NodeMask traversalMask; ///< the visitor's
         std::vector<const osg::Node*> children;
         std::vector<SkinnedGeometry*> shared{}; ///< the visible ones that may be drawn with those of other characters
-        std::vector<osg::Node*> others{};       ///< drawn normally
+        bool hasOthers = false;                 ///< true: some children are drawn normally
         osg::BoundingBox box{};                 ///< of the meshes
         std::optional<LodRange> range{};        ///< empty: not asked for yet
 
         bool isOf(const osg::Group& node) const;
     };
-    /// Characters that differ in poses, placements and looks only.
-    struct Group
+    /// What the characters of a group have in common, besides their state graph.
+    struct GroupKey
     {
         const osgUtil::RenderBin* bin;
         const osg::RefMatrix* projection;
         const AnimationSet* set;
         std::size_t slot;
         int level; ///< of detail
+
+        bool operator==(const GroupKey& other) const
+        {
+            return bin == other.bin && projection == other.projection && set == other.set && slot == other.slot &&
+                   level == other.level;
+        }
+    };
+    /// Characters that differ in poses, placements and looks only.
+    struct Group
+    {
+        GroupKey key;
         /// By the number of their look; null: none yet.
         std::vector<std::shared_ptr<std::vector<InstanceTransform>>> instances{};
         std::unordered_map<const osg::Node*, PaletteBinding*> bindings{}; ///< of the meshes' draws; null: drawn once
 
-        bool isSame(const Group& other) const;
         /// True if the look has a list of instances, which the draws of all its meshes show.
         bool isOpen(const Look& look) const
         {

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/gpu/passes/FeedbackTimer.h>
 
+#include <osgGpuAnimation/gpu/detail/TimeStamps.h>
+
 #include <osg/ContextData>
 #include <osg/Program>
 #include <osg/VertexArrayState>
-
-#ifndef GL_TIMESTAMP
-#define GL_TIMESTAMP 0x8E28
-#endif
-#ifndef GL_QUERY_COUNTER_BITS_ARB
-#define GL_QUERY_COUNTER_BITS_ARB 0x8864
-#endif
 
 namespace osgGpuAnimation
 {
@@ -31,10 +26,9 @@ void DeletionLists::make(osg::State& state)
 }
 
 FeedbackTimer::FeedbackTimer(unsigned int contextId)
-    : osg::GraphicsObjectManager("FeedbackTimer", contextId), _gl(osg::GLExtensions::Get(contextId, true))
+    : osg::GraphicsObjectManager("FeedbackTimer", contextId), _gl(osg::GLExtensions::Get(contextId, true)),
+      _clockBits(timeStampBits(*_gl))
 {
-    // Some drivers have the queries but no clock.
-    if (_gl->isARBTimerQuerySupported) _gl->glGetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS_ARB, &_clockBits);
 }
 
 FeedbackTimer& FeedbackTimer::of(osg::State& state)

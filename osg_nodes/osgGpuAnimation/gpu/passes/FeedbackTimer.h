@@ -71,7 +71,7 @@ private:
     Stamps nextStamps();
 
     osg::GLExtensions* _gl;
-    GLint _clockBits = 0;         ///< 0: no time stamps
+    GLint _clockBits;             ///< 0: no time stamps
     std::deque<Stamps> _inFlight; ///< the oldest first; the last has no end time stamp while _isMeasuring
     std::vector<Stamps> _spare;
     bool _isMeasuring = false;

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 # `cpack -G DEB` makes two Debian packages: the libraries, plugins and the tool; and what a program of one's own is built
-# with. `cpack -G ZIP` for Windows: everything beside the programs, OSG's viewer too. Configure with -DCMAKE_INSTALL_PREFIX=/usr for Debian's own (multiarch) library folder.
+# with. Configure with -DCMAKE_INSTALL_PREFIX=/usr for Debian's own (multiarch) library folder. On Windows `cpack -G ZIP`
+# makes a folder with everything beside the programs, OSG's viewer too.
 set(CPACK_PACKAGE_NAME osggpuanimation)
 set(CPACK_PACKAGE_VENDOR "the osgGpuAnimation authors")
 set(CPACK_PACKAGE_CONTACT "the osgGpuAnimation authors")
@@ -37,13 +38,10 @@ install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}
         RENAME copyright COMPONENT development)
 if(WIN32)
     set(CPACK_GENERATOR ZIP)
-    get_filename_component(osg_folder ${OSG_INCLUDE_DIR} DIRECTORY)
-    install(PROGRAMS ${osg_folder}/bin/osgviewer.exe ${osg_folder}/bin/osgconv.exe DESTINATION ${CMAKE_INSTALL_BINDIR}
-            COMPONENT runtime OPTIONAL)
-    install(DIRECTORY ${osg_folder}/bin/ DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime FILES_MATCHING PATTERN *.dll)
-    install(CODE "set(PROGRAMS ${CMAKE_INSTALL_BINDIR})
-                  set(FOLDERS ${CMAKE_CXX_IMPLICIT_LINK_DIRECTORIES})
-                  set(OBJDUMP ${CMAKE_OBJDUMP})" COMPONENT runtime)
-    install(SCRIPT ${CMAKE_CURRENT_LIST_DIR}/windows/beside.cmake COMPONENT runtime)
+    get_filename_component(CPACK_OSG_FOLDER ${OSG_INCLUDE_DIR} DIRECTORY)
+    set(CPACK_PROGRAMS ${CMAKE_INSTALL_BINDIR})
+    set(CPACK_COMPILER_FOLDERS ${CMAKE_CXX_IMPLICIT_LINK_DIRECTORIES})
+    set(CPACK_OBJDUMP ${CMAKE_OBJDUMP})
+    set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_LIST_DIR}/windows/beside.cmake)
 endif()
 include(CPack)

@@ -88,9 +88,7 @@ constexpr unsigned int steps = aiProcess_Triangulate | aiProcess_SortByPType | a
 
 Result<const aiScene*> readFbx(Assimp::Importer& importer, const std::string& fileName, gltf::Report& report)
 {
-    const Result<gltf::RegularFile> file = gltf::RegularFile::open(fileName);
-    if (!file) return file.error();
-    Result<std::string> content = file.value().readWhole();
+    Result<std::string> content = RegularFile::readWhole(fileName);
     if (!content) return content.error();
     const Result<fbx::Scene> fbx = fbx::Scene::read(std::move(content).value());
     if (!fbx) return fbx.error();

@@ -150,7 +150,7 @@ private:
         // Exporters write paths of the author's machine.
         for (const std::string& place : {path, name, "textures/" + name, _modelName + ".fbm/" + name})
         {
-            const Result<gltf::RegularFile> file = _folder.openPath(place);
+            const Result<RegularFile> file = _folder.openPath(place);
             if (!file) continue;
             if (file.value().size() > maxBytes) return Error{"has more than " + std::to_string(maxBytes) + " bytes"};
             return file.value().readWhole();

@@ -1,17 +1,23 @@
 # SPDX-License-Identifier: MIT
-# Run by the installation on Windows, with the folders of the compiler's libraries: what the installed programs, plugins
-# and OSG's libraries need comes to lie beside the programs, except for the system's own libraries.
-set(programs $ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}/${PROGRAMS})
-file(GLOB executables ${programs}/*.exe)
-file(GLOB libraries ${programs}/*.dll)
-file(GLOB modules ${programs}/*/*.dll)
+# Run by CPack before it makes the ZIP: OSG's viewer, converter, libraries and plugins, and what they and ours need, come to
+# lie beside the programs, except for the system's own libraries.
+set(programs "${CPACK_TEMPORARY_DIRECTORY}/${CPACK_PROGRAMS}")
+file(INSTALL "${CPACK_OSG_FOLDER}/bin/osgviewer.exe" "${CPACK_OSG_FOLDER}/bin/osgconv.exe" DESTINATION "${programs}")
+file(INSTALL "${CPACK_OSG_FOLDER}/bin/" DESTINATION "${programs}" FILES_MATCHING PATTERN *.dll)
+file(GLOB executables "${programs}/*.exe")
+file(GLOB libraries "${programs}/*.dll")
+file(GLOB modules "${programs}/*/*.dll")
 if(CMAKE_HOST_UNIX)
     set(CMAKE_GET_RUNTIME_DEPENDENCIES_PLATFORM windows+pe)
     set(CMAKE_GET_RUNTIME_DEPENDENCIES_TOOL objdump)
-    set(CMAKE_GET_RUNTIME_DEPENDENCIES_COMMAND ${OBJDUMP})
+    set(CMAKE_GET_RUNTIME_DEPENDENCIES_COMMAND "${CPACK_OBJDUMP}")
 endif()
 file(GET_RUNTIME_DEPENDENCIES EXECUTABLES ${executables} LIBRARIES ${libraries} MODULES ${modules}
-     DIRECTORIES ${programs} ${FOLDERS} PRE_EXCLUDE_REGEXES "^(api-ms|ext-ms)-" POST_EXCLUDE_REGEXES "[Ss]ystem32/"
-     RESOLVED_DEPENDENCIES_VAR found UNRESOLVED_DEPENDENCIES_VAR of_the_system)
-list(FILTER found EXCLUDE REGEX "^${programs}/")
-file(INSTALL ${found} DESTINATION ${programs})
+     DIRECTORIES "${programs}" ${CPACK_COMPILER_FOLDERS} PRE_EXCLUDE_REGEXES "^(api-ms|ext-ms)-"
+     POST_EXCLUDE_REGEXES "[Ss]ystem32/" RESOLVED_DEPENDENCIES_VAR found UNRESOLVED_DEPENDENCIES_VAR of_the_system)
+foreach(library IN LISTS found)
+    cmake_path(IS_PREFIX programs "${library}" NORMALIZE is_there)
+    if(NOT is_there)
+        file(INSTALL "${library}" DESTINATION "${programs}")
+    endif()
+endforeach()

@@ -408,11 +408,11 @@ TEST(HdrPictureTest, surroundingsOfAFileNameItInTheirErrors)
     const std::string large = folder.write("large.hdr", rgbe(sunset));
     std::filesystem::resize_file(large, (std::uintmax_t(1) << 30) + 1); // sparse
     const std::pair<std::string, std::string> cases[] = {
-        {large, "expected at most 1 GiB, found 1073741825 bytes"},
-        {folder.file("none.hdr"), "there is no such file"},
-        {folder.file(""), "is not a regular file"},
-        {"/dev/zero", "is not a regular file"},
-        {"/proc/self/mem", "expected a picture that begins with"}, // a regular file whose first byte cannot be read
+        {large, "expected a file of at most 1073741824 bytes, found 1073741825"},
+        {folder.file("none.hdr"), "the file does not exist"},
+        {folder.file(""), "expected a regular file, found a folder"},
+        {"/dev/zero", "expected a regular file, found a device"},
+        {"/proc/self/mem", "the file is empty"}, // by its size
         {folder.write("cut.hdr", rgbe(rowOf8())), "expected 4 rows"},
         {folder.write("square.hdr", rgbe(sunset, 8, 2)), "twice as many pixels across as up, found 8x2"},
     };

@@ -45,7 +45,7 @@ TEST(OutfitsFileTest, hasWhatOutfitsHave)
 TEST(OutfitsFileTest, faultsNameTheMember)
 {
     const ScratchFolder folder;
-    EXPECT_TRUE(hasError(readOutfitsFile(folder.file("none.json")), "none.json: there is no such file"));
+    EXPECT_TRUE(hasError(readOutfitsFile(folder.file("none.json")), "none.json: the file does not exist"));
     const struct
     {
         const char* outfit;

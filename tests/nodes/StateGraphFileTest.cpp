@@ -217,15 +217,16 @@ TEST(StateGraphFileTest, readsFilesAndNamesThemInErrors)
     const std::string longest = text + std::string((1 << 16) - std::string(text).size(), ' ');
     EXPECT_TRUE(parseStateGraph(*set, longest));
     EXPECT_TRUE(readStateGraphFile(*set, folder.write("longest.states.json", longest)));
-    EXPECT_EQ(readStateGraphFile(*set, "/dev/null").error().message, "/dev/null: is not a plain file");
+    EXPECT_EQ(readStateGraphFile(*set, "/dev/null").error().message,
+              "/dev/null: expected a regular file, found a device or socket");
     const auto fault = [&](const std::string& file) { return readStateGraphFile(*set, file).error().message; };
     const std::string bad = folder.write("bad.states.json", "{}");
     EXPECT_EQ(fault(bad), bad + ": a state graph without states");
     const std::string none = folder.file("none.json");
-    EXPECT_EQ(fault(none), none + ": there is no such file");
-    EXPECT_EQ(fault(folder.file("")), folder.file("") + ": is not a file but a folder");
+    EXPECT_EQ(fault(none), none + ": the file does not exist");
+    EXPECT_EQ(fault(folder.file("")), folder.file("") + ": expected a regular file, found a folder");
     const std::string huge = folder.write("huge.json", std::string((1 << 16) + 1, ' '));
-    EXPECT_EQ(fault(huge), huge + ": 65537 bytes, at most 65536 are read");
+    EXPECT_EQ(fault(huge), huge + ": expected a file of at most 65536 bytes, found 65537");
 }
 
 } // namespace

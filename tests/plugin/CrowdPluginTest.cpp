@@ -228,7 +228,7 @@ TEST_F(CrowdPluginTest, dressesInstancesByAFileOrAtRandom)
         EXPECT_EQ(outfit->getColors().count("Skin"), 0u);
         EXPECT_EQ(outfit->getColors().count("Coat"), 1u);
     }
-    expectError("arm.gltf.2x2.crowd", "outfits=none.json", "none.json: there is no such file");
+    expectError("arm.gltf.2x2.crowd", "outfits=none.json", "none.json: the file does not exist");
 }
 
 TEST_F(CrowdPluginTest, handsOtherWordsToTheModelsReaderAsTheyAre)

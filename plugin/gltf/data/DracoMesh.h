@@ -18,7 +18,7 @@ namespace osgGpuAnimation::gltf
 
 /// A mesh decoded from Draco's bit stream (KHR_draco_mesh_compression requires version 2.2). The only exported class of
 /// the library that links Draco, see plugin/CMakeLists.txt.
-class [[gnu::visibility("default")]] DracoMesh
+class DracoMesh
 {
 public:
     /// Decodes a mesh of exactly `faces` triangles: the header is checked before any memory is allocated for them.
@@ -38,7 +38,7 @@ public:
         const;
 
 private:
-    [[gnu::visibility("hidden")]] explicit DracoMesh(std::unique_ptr<draco::Mesh> mesh);
+    explicit DracoMesh(std::unique_ptr<draco::Mesh> mesh);
 
     std::unique_ptr<draco::Mesh> _mesh;
 };

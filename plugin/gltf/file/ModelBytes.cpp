@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/file/ModelBytes.h"
 
-#include <osgGpuAnimation/math/detail/System.h>
-
 #include <algorithm>
 #include <istream>
 
@@ -11,16 +9,6 @@ namespace osgGpuAnimation::gltf
 
 namespace
 {
-
-const std::size_t maxPathText = 200;
-
-// A GLB stores its length in 32 bits. A sparse file can be far larger than its disk.
-const std::uint64_t maxBytesOfAFile = std::uint64_t(1) << 32;
-
-Error about(const std::string& path, const std::string& what)
-{
-    return Error{subjectOfFile(path) + what};
-}
 
 const std::string_view magic = "glTF";
 const std::size_t headerBytes = 12;
@@ -94,68 +82,7 @@ std::optional<Error> checkBeginning(const RegularFile& file, std::size_t maxJson
     return checkJsonBytes(claimedJsonBytes(beginning, file.size()), maxJsonBytes);
 }
 
-/// RegularFile's messages begin with the path.
-Error withoutPath(const Error& error, const std::string& path)
-{
-    const std::string subject = subjectOfFile(path);
-    return error.message.rfind(subject, 0) == 0 ? Error{error.message.substr(subject.size())} : error;
-}
-
 } // namespace
-
-std::string subjectOfFile(const std::string& path)
-{
-    return printable(path, maxPathText) + ": ";
-}
-
-Result<RegularFile> RegularFile::open(const std::string& path)
-{
-    const Result<system::File> file = system::openRegularFile(path);
-    if (!file) return about(path, file.error().message);
-    return RegularFile(file.value().handle, static_cast<std::size_t>(file.value().size), path);
-}
-
-RegularFile::RegularFile(RegularFile&& other) noexcept
-    : _handle(std::exchange(other._handle, system::File::none)), _size(other._size), _path(std::move(other._path))
-{
-}
-
-RegularFile::~RegularFile()
-{
-    if (_handle != system::File::none) system::closeFile(_handle);
-}
-
-bool RegularFile::isSameAs(const std::string& path) const
-{
-    return system::isSameFile(_handle, path);
-}
-
-Result<std::size_t> RegularFile::read(void* to, std::size_t bytes) const
-{
-    std::size_t done = 0;
-    while (done < bytes)
-    {
-        const Result<std::size_t> count = system::readFile(_handle, done, static_cast<char*>(to) + done, bytes - done);
-        if (!count) return about(_path, count.error().message);
-        if (count.value() == 0)
-            return about(_path, "expected " + std::to_string(bytes) + " bytes, found " + std::to_string(done));
-        done += count.value();
-    }
-    return done;
-}
-
-Result<std::string> RegularFile::readWhole() const
-{
-    if (_size == 0) return about(_path, "the file is empty");
-    std::string content;
-    if (_size > maxBytesOfAFile || _size > content.max_size())
-        return about(_path, "expected a file of at most " + std::to_string(maxBytesOfAFile) + " bytes, found " +
-                                std::to_string(_size));
-    content.resize(_size);
-    const Result<std::size_t> done = read(content.data(), content.size());
-    if (!done) return done.error();
-    return content;
-}
 
 Result<GlbContainer> splitContainer(std::string_view bytes, Report& report)
 {
@@ -199,11 +126,9 @@ std::optional<Error> checkJsonBytes(std::size_t bytes, std::size_t limit)
 Result<std::string> readModelFile(const std::string& path, const ImportOptions& options)
 {
     const Result<RegularFile> file = RegularFile::open(path);
-    if (!file) return withoutPath(file.error(), path);
-    if (const std::optional<Error> error = checkBeginning(file.value(), options.maxJsonBytes))
-        return withoutPath(*error, path);
-    Result<std::string> bytes = file.value().readWhole();
-    return bytes ? std::move(bytes) : withoutPath(bytes.error(), path);
+    if (!file) return file.error();
+    if (const std::optional<Error> error = checkBeginning(file.value(), options.maxJsonBytes)) return *error;
+    return file.value().readWhole();
 }
 
 Result<std::string> readModelStream(std::istream& stream, const ImportOptions& options, std::size_t maxBytes)

@@ -4,51 +4,16 @@
 #include "gltf/file/ImportOptions.h"
 #include "gltf/file/Report.h"
 
-#include <osgGpuAnimation/math/Result.h>
+#include <osgGpuAnimation/math/detail/RegularFile.h>
 
 #include <cstddef>
-#include <cstdint>
 #include <iosfwd>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 
 namespace osgGpuAnimation::gltf
 {
-
-/// A regular file opened for reading. Folders, pipes and devices are refused: reading them may block or never end.
-/// Errors are sentences about the path: `base.bin: does not exist`.
-class RegularFile
-{
-public:
-    static Result<RegularFile> open(const std::string& path);
-
-    RegularFile(RegularFile&& other) noexcept;
-    RegularFile& operator=(RegularFile&&) = delete;
-    ~RegularFile();
-
-    std::size_t size() const { return _size; } ///< bytes, when it was opened
-    bool isSameAs(const std::string& path) const;
-
-    /// Reads the first `bytes` bytes into `to`. Errors: the file cannot be read or is shorter.
-    Result<std::size_t> read(void* to, std::size_t bytes) const;
-    /// Reads the whole file. Errors: it is empty, larger than 4 GiB or cannot be read.
-    Result<std::string> readWhole() const;
-
-private:
-    RegularFile(std::intptr_t handle, std::size_t size, std::string path)
-        : _handle(handle), _size(size), _path(std::move(path))
-    {
-    }
-
-    std::intptr_t _handle; ///< of system::File
-    std::size_t _size;
-    std::string _path;
-};
-
-/// The prefix of errors about a file: its path, clipped if it is long, and a colon.
-std::string subjectOfFile(const std::string& path);
 
 /// The parts of a file, as views into its bytes.
 struct GlbContainer

@@ -139,6 +139,11 @@ Error outside(const std::string& path)
                  " (the option allowOutsideFiles lets it be read)"};
 }
 
+Error noFileName(const std::string& path, const std::system_error& fault)
+{
+    return Error{"expected a file, found " + quoted(path) + ": " + fault.code().message()};
+}
+
 fs::path folderOf(const fs::path& file)
 {
     return file.has_parent_path() ? file.parent_path() : ".";
@@ -212,12 +217,14 @@ Result<RegularFile> ModelFolder::openPath(const std::string& path) const
     const Result<std::string> resolved = resolve(path);
     if (!resolved) return resolved.error();
     Result<RegularFile> file = RegularFile::open(resolved.value());
-    if (file && file.value().isSameAs(_modelFile))
-        return Error{"expected a file of its own, found the model file itself"};
+    if (!file) return Error{quoted(path) + ": " + file.error().message};
+    if (file.value().isSameAs(_modelFile)) return Error{"expected a file of its own, found the model file itself"};
     return file;
 }
 
+// On Windows not every text can be a file name.
 Result<std::string> ModelFolder::find(const std::string& path) const
+try
 {
     const fs::path folder = folderOf(_modelFile);
     std::error_code error;
@@ -229,8 +236,13 @@ Result<std::string> ModelFolder::find(const std::string& path) const
     if (file == fs::canonical(_modelFile, error) && !error) return Error{"it is the model file itself"};
     return file.string();
 }
+catch (const std::system_error& fault)
+{
+    return noFileName(path, fault);
+}
 
 Result<std::string> ModelFolder::resolve(const std::string& path) const
+try
 {
     // Check the text first: files outside the folder are never looked up.
     if (!_allowOutsideFiles && leavesFolder(path)) return outside(path);
@@ -245,6 +257,10 @@ Result<std::string> ModelFolder::resolve(const std::string& path) const
     if (error) return Error{"the model's folder cannot be found: " + error.message()};
     if (!isBelow(file, home)) return outside(path);
     return file.string();
+}
+catch (const std::system_error& fault)
+{
+    return noFileName(path, fault);
 }
 
 } // namespace osgGpuAnimation::gltf

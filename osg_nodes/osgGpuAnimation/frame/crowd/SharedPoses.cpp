@@ -188,7 +188,7 @@ private:
     };
 
     /// Not inline: loops would look up the thread's address again and again.
-    [[gnu::noinline]] static Storage& storageOfThread()
+    OSGGPUANIMATION_NOINLINE static Storage& storageOfThread()
     {
         static thread_local Storage storage;
         return storage;

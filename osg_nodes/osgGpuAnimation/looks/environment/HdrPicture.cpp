@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/looks/environment/HdrPicture.h>
+#include <osgGpuAnimation/math/detail/RegularFile.h>
 
 #include <osg/Texture>
 
@@ -9,8 +10,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <new>
 #include <vector>
 
@@ -23,7 +22,7 @@ namespace
 using Picture = osg::ref_ptr<osg::Image>;
 using Row = std::vector<std::array<unsigned char, 4>>; // RGBE
 
-constexpr std::uintmax_t maxFileBytes = std::uintmax_t(1) << 30;
+constexpr std::uint64_t maxFileBytes = 1u << 30;
 
 Error fault(const std::string& expected, const std::string& found)
 {
@@ -135,19 +134,11 @@ catch (const std::bad_alloc&)
 Result<Picture> readHdrFile(const std::string& file)
 try
 {
-    const auto named = [&](const std::string& message) { return Error{file + ": " + message}; };
-    std::error_code failure;
-    const std::filesystem::file_status status = std::filesystem::status(file, failure);
-    if (!std::filesystem::exists(status)) return named("there is no such file");
-    if (!std::filesystem::is_regular_file(status)) return named("is not a regular file");
-    const std::uintmax_t size = std::filesystem::file_size(file, failure);
-    if (failure) return named("cannot be read");
-    if (size > maxFileBytes) return named(fault("at most 1 GiB", std::to_string(size) + " bytes").message);
-    std::string bytes(size, '\0');
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream.read(bytes.data(), static_cast<std::streamsize>(size))) return named("cannot be read");
-    const Result<Picture> picture = decodeHdr(bytes);
-    if (!picture) return named(picture.error().message);
+    const auto named = [&](const Error& error) { return Error{file + ": " + error.message}; };
+    const Result<std::string> bytes = RegularFile::readWhole(file, maxFileBytes);
+    if (!bytes) return named(bytes.error());
+    const Result<Picture> picture = decodeHdr(bytes.value());
+    if (!picture) return named(picture.error());
     picture.value()->setFileName(file);
     return picture;
 }

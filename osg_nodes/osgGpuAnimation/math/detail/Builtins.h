@@ -3,11 +3,14 @@
 
 #include <cstdint>
 
+// What compilers offer beside C++17. No other file uses their functions and attributes.
+
 #ifdef _MSC_VER
 #include <intrin.h>
+#define OSGGPUANIMATION_NOINLINE __declspec(noinline)
+#else
+#define OSGGPUANIMATION_NOINLINE [[gnu::noinline]]
 #endif
-
-// What compilers offer beside C++17. No other file uses their functions.
 
 namespace osgGpuAnimation
 {

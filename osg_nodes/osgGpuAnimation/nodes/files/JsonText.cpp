@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/math/detail/RegularFile.h>
 #include <osgGpuAnimation/nodes/files/JsonText.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <set>
 
 namespace osgGpuAnimation::json
@@ -42,32 +40,19 @@ private:
     std::vector<std::set<std::string>> _members; ///< of each enclosing object
 };
 
-Error tooLong(std::uintmax_t size)
-{
-    return Error{std::to_string(size) + " bytes, at most " + std::to_string(maxText) + " are read"};
-}
-
 } // namespace
 
 Result<std::string> readJsonFile(const std::string& file)
 {
-    std::error_code error;
-    const std::filesystem::file_status status = std::filesystem::status(file, error);
-    if (!std::filesystem::exists(status)) return Error{file + ": there is no such file"};
-    if (std::filesystem::is_directory(status)) return Error{file + ": is not a file but a folder"};
-    if (!std::filesystem::is_regular_file(status)) return Error{file + ": is not a plain file"};
-    const std::uintmax_t size = std::filesystem::file_size(file, error);
-    if (error) return Error{file + ": " + error.message()};
-    if (size > maxText) return Error{file + ": " + tooLong(size).message};
-    std::ifstream stream(file, std::ios::binary);
-    std::string text{std::istreambuf_iterator<char>(stream), {}};
-    if (!stream.good() && !stream.eof()) return Error{file + ": cannot be read"};
+    const Result<std::string> text = RegularFile::readWhole(file, maxText);
+    if (!text) return Error{file + ": " + text.error().message};
     return text;
 }
 
 Result<void> readJson(const std::string& text, const std::function<void(const Json&)>& read)
 {
-    if (text.size() > maxText) return tooLong(text.size());
+    if (text.size() > maxText)
+        return Error{std::to_string(text.size()) + " bytes, at most " + std::to_string(maxText) + " are read"};
     try
     {
         ParserWatch watch;

@@ -6,3 +6,6 @@
 #include <osg/GL>
 
 #include <GL/glext.h>
+
+// A mapping mode of windows.h, which MinGW's gl.h includes; osgAnimation's name of something else.
+#undef RELATIVE

@@ -27,6 +27,19 @@ std::string lastError()
     return std::system_category().message(static_cast<int>(GetLastError()));
 }
 
+/// Empty, which no function opens: the path is no text of the system's code page.
+std::wstring asWide(const std::string& path)
+{
+    try
+    {
+        return std::filesystem::path(path).wstring();
+    }
+    catch (const std::system_error&)
+    {
+        return {};
+    }
+}
+
 /// By handle, so that it is of the file and not of a name. True also for a folder, if `flags` open folders.
 bool identify(HANDLE file, BY_HANDLE_FILE_INFORMATION& outInformation)
 {
@@ -37,8 +50,8 @@ HANDLE open(const std::string& path, DWORD access)
 {
     // Without the flag for backups, a folder cannot be opened; of a pipe, no server learns who this process is.
     const DWORD flags = FILE_FLAG_BACKUP_SEMANTICS | SECURITY_SQOS_PRESENT | SECURITY_ANONYMOUS;
-    return CreateFileW(std::filesystem::path(path).c_str(), access,
-                       FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE, nullptr, OPEN_EXISTING, flags, nullptr);
+    return CreateFileW(asWide(path).c_str(), access, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE, nullptr,
+                       OPEN_EXISTING, flags, nullptr);
 }
 
 } // namespace
@@ -97,7 +110,7 @@ Result<std::size_t> readFile(std::intptr_t handle, std::uint64_t from, void* to,
 std::FILE* createFile(const std::string& path)
 {
     const int flags = _O_CREAT | _O_EXCL | _O_WRONLY | _O_BINARY | _O_NOINHERIT;
-    const int descriptor = _wopen(std::filesystem::path(path).c_str(), flags, _S_IREAD | _S_IWRITE);
+    const int descriptor = _wopen(asWide(path).c_str(), flags, _S_IREAD | _S_IWRITE);
     return descriptor < 0 ? nullptr : _fdopen(descriptor, "wb");
 }
 
@@ -108,7 +121,15 @@ std::string moduleOf(const void* address)
     if (!GetModuleHandleExW(flags, static_cast<LPCWSTR>(address), &module)) return {};
     std::array<wchar_t, 4096> path{};
     const DWORD length = GetModuleFileNameW(module, path.data(), static_cast<DWORD>(path.size()));
-    return length < path.size() ? std::filesystem::path(path.data()).string() : std::string();
+    if (length == path.size()) return {};
+    try
+    {
+        return std::filesystem::path(path.data()).string();
+    }
+    catch (const std::system_error&)
+    {
+        return {};
+    }
 }
 
 unsigned long processId()

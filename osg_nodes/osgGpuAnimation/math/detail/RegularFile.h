@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/math/Result.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace osgGpuAnimation
+{
+
+/// A regular file opened for reading. Folders, pipes and devices are refused: reading them may block or never end.
+/// Errors do not name the file.
+class RegularFile
+{
+public:
+    static Result<RegularFile> open(const std::string& path);
+    /// All of a file of at most maxBytes bytes. Errors: open()'s and readWhole()'s.
+    static Result<std::string> readWhole(const std::string& path, std::uint64_t maxBytes = 1ull << 32);
+
+    RegularFile(RegularFile&& other) noexcept;
+    RegularFile& operator=(RegularFile&&) = delete;
+    ~RegularFile();
+
+    std::size_t size() const { return _size; } ///< bytes, when it was opened
+    bool isSameAs(const std::string& path) const;
+
+    /// Reads the first `bytes` bytes into `to`. Errors: the file cannot be read or is shorter.
+    Result<std::size_t> read(void* to, std::size_t bytes) const;
+    /// Reads the whole file. Errors: it is empty, has more than maxBytes or cannot be read.
+    Result<std::string> readWhole(std::uint64_t maxBytes = 1ull << 32) const;
+
+private:
+    RegularFile(std::intptr_t handle, std::size_t size) : _handle(handle), _size(size) {}
+
+    std::intptr_t _handle; ///< of system::File
+    std::size_t _size;
+};
+
+} // namespace osgGpuAnimation

@@ -124,7 +124,7 @@ const Failure failures[] = {
     {"render flag.gltf --clips other.gltf --clip-joints cut.gltf -o out/x.png", "flag.gltf", "clipJoints"},
     {"render flag.gltf --variant blue -o out/x.png", "flag.gltf", "blue"},
     {"render filmed.gltf --camera x -o out/x.png", "filmed.gltf", "the scene's cameras are: \"film\", \"plan\""},
-    {"render flag.gltf --environment missing.hdr -o out/x.png", "missing.hdr", "no such file"},
+    {"render flag.gltf --environment missing.hdr -o out/x.png", "missing.hdr", "does not exist"},
     {"render flag.gltf --environment missing.png -o out/x.png", "missing.png", "no such file"},
     {"render flag.gltf --environment notes.json -o out/x.png", "notes.json", "not a picture"},
     {"render flag.gltf --environment wide.png -o out/x.png", "wide.png", "found 9x4"},

@@ -12,6 +12,7 @@
 #include "support/RandomSet.h"
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -119,7 +120,7 @@ TEST(BoundsTest, holdEveryVertexAtEveryTimeAndNotMuchMore)
 TEST(BoundsTest, aBladeThatSwingsRoundIsBoundByItsArc)
 {
     // The keys are 170 degrees apart; at the keys themselves the tip is not near y = 1.
-    const double a = 170.0 / 180.0 * M_PI / 2.0;
+    const double a = 170.0 / 180.0 * glm::pi<double>() / 2.0;
     const std::vector<double> values{0, 0, 0, 1, 0, 0, std::sin(a), std::cos(a)};
     const auto set =
         setOf(oneJoint(),

@@ -6,6 +6,7 @@
 #include "support/ReferencePose.h"
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -89,7 +90,8 @@ TEST(JointTransformTest, slerpTakesTheShorterWay)
         {"at the end", turnAboutZ(0.5), turnAboutZ(1.5), 1.0f, turnAboutZ(1.5)},
         {"a third", turnAboutZ(0.0), turnAboutZ(1.5), 1.0f / 3, turnAboutZ(0.5)},
         {"signs opposite", turnAboutZ(0.0), -turnAboutZ(1.5), 0.5f, turnAboutZ(0.75)},
-        {"more than half a turn goes back", turnAboutZ(0.0), turnAboutZ(5.0), 0.5f, turnAboutZ((5.0 - 2 * M_PI) / 2)},
+        {"more than half a turn goes back", turnAboutZ(0.0), turnAboutZ(5.0), 0.5f,
+         turnAboutZ((5.0 - 2 * glm::pi<double>()) / 2)},
         {"half a turn by its signs", {0, 0, 0, 1}, {0, 1, 0, 0}, 0.5f, {0, std::sqrt(0.5f), 0, std::sqrt(0.5f)}},
         {"the same", turnAboutZ(1.0), turnAboutZ(1.0), 0.7f, turnAboutZ(1.0)},
         {"next to the same", turnAboutZ(0.0), turnAboutZ(1e-6), 0.5f, turnAboutZ(5e-7)},

@@ -3,8 +3,7 @@
 
 #include <filesystem>
 #include <fstream>
-#include <stdexcept>
-#include <stdlib.h>
+#include <random>
 #include <string>
 
 namespace osgGpuAnimation
@@ -16,9 +15,10 @@ class ScratchFolder
 public:
     ScratchFolder()
     {
-        std::string name = (std::filesystem::temp_directory_path() / "osggpuanimation-XXXXXX").string();
-        if (!mkdtemp(name.data())) throw std::runtime_error("cannot make a folder like " + name);
-        _path = name;
+        std::random_device random;
+        do
+            _path = std::filesystem::temp_directory_path() / ("osggpuanimation-" + std::to_string(random()));
+        while (!std::filesystem::create_directory(_path));
     }
     ScratchFolder(const ScratchFolder&) = delete;
     ScratchFolder& operator=(const ScratchFolder&) = delete;

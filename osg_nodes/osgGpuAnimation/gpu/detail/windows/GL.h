@@ -7,5 +7,7 @@
 
 #include <GL/glext.h>
 
-// A mapping mode of windows.h, which MinGW's gl.h includes; osgAnimation's name of something else.
+// Macros of windows.h, which MinGW's gl.h includes, that are names in OSG's headers and in our sources.
 #undef RELATIVE
+#undef far
+#undef near

@@ -55,10 +55,11 @@ struct ScenesCase
     std::size_t depth;
     unsigned int times; ///< a group is child of the next one
     std::size_t onceCount, pathCount;
-    const char *onceFault, *pathFault;
+    std::string onceFault, pathFault;
 };
 
-const char tooDeep[] = "node \"\" has more than 4351 nodes above it";
+const std::string tooDeep =
+    "node \"\" has more than " + std::to_string(SceneGuard::maxRecursion - 1) + " nodes above it";
 const ScenesCase scenesCases[] = {
     {"the deepest that is visited", SceneGuard::maxRecursion, 1, 1, 1, "", ""},
     {"deeper", 100'000, 1, 0, 0, tooDeep, tooDeep},

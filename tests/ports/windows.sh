@@ -75,18 +75,18 @@ build_kit()
     make kit plugins osggpuanim "${programs[@]/%/_tests}"
 }
 
-# Starts a Windows program, found on the paths, on $DISPLAY.
+# Starts a Windows program of the build on $DISPLAY.
 start()
 {
     local path=$build/bin:$prefix/bin:/usr/lib/gcc/x86_64-w64-mingw32/12-posix:/usr/x86_64-w64-mingw32/lib
-    WINEPATH="Z:${path//:/;Z:}" OSG_LIBRARY_PATH="Z:$build/lib;Z:$prefix/bin" exec wine "$@"
+    WINEPATH="Z:${path//:/;Z:}" OSG_LIBRARY_PATH="Z:$build/lib;Z:$prefix/bin" exec wine "$build/bin/$1" "${@:2}"
 }
 
-# test_suite PROGRAM SUITE: prints googletest's lines about each test; a crash and five minutes are failures, too.
+# test_suite PROGRAM SUITE: prints googletest's lines about each test; a crash and two minutes are failures, too.
 test_suite()
 {
     local log=$folder/logs/$1.${2//\//-}log
-    (start "$1_tests.exe" "--gtest_filter=$2*") <&- 2>&1 | tr -d '\r' >"$log" || true
+    timeout 120 bash -c 'start "$@"' - "$1_tests.exe" "--gtest_filter=$2*" </dev/null 2>&1 | tr -d '\r' >"$log" || true
     grep -E '^\[( +OK|  FAILED|  SKIPPED) \] [^ ]+ \(' "$log" | sed 's/ (.*//' || true
     grep -qE '^\[  PASSED|^\[  FAILED' "$log" && grep -q 'Global test environment tear-down' "$log" ||
         echo "[  FAILED  ] $(grep -oE '^\[ RUN +\] .*' "$log" | tail -1 | sed 's/.*\] //' | grep . || echo "${2}starts") (crash)"
@@ -102,9 +102,9 @@ run_tests()
     mkdir -p "$folder/logs"
     for program in "${programs[@]}"; do
         mapfile -t suites < <((start "${program}_tests.exe" --gtest_list_tests) 2>/dev/null | tr -d '\r' |
-            grep -E '^[^ ]' | sed 's/ .*//' | grep -E "$1")
+            sed -nE 's/^([^ ]+\.).*/\1/p' | grep -E "$1")
         [ ${#suites[@]} -eq 0 ] ||
-            printf '%s\0' "${suites[@]}" | xargs -0 -P "$(nproc)" -I{} timeout 300 bash -c 'test_suite "$@"' - "$program" {}
+            printf '%s\0' "${suites[@]}" | xargs -0 -P "$(nproc)" -I{} bash -c 'test_suite "$@"' - "$program" {}
     done >"$folder/results"
 }
 

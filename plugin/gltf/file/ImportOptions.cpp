@@ -145,7 +145,7 @@ const std::vector<Option>& allOptions()
         {"maxJsonBytes=N", "bytes of the JSON text, data URIs included; default: 512 MiB", number,
          setLimit<&ImportOptions::maxJsonBytes>},
         {"maxJsonDepth=N", "nesting depth of the JSON; default: 256", number, setLimit<&ImportOptions::maxJsonDepth>},
-        {"maxNodeDepth=N", "nodes from a root to a leaf; default: 4096", number,
+        {"maxNodeDepth=N", "nodes from a root to a leaf; default: 4096, on Windows 512", number,
          setLimit<&ImportOptions::maxNodeDepth>},
         {"maxElements=N", "elements of any one array; default: 16777216", number,
          setLimit<&ImportOptions::maxElements>},

@@ -12,6 +12,16 @@
 namespace osgGpuAnimation::system
 {
 
+/// The usual stack of a program's first thread, for recursive traversals; and whether the system has ended all other
+/// threads, wherever they were, before the static objects of a library are destroyed.
+#ifdef _WIN32
+constexpr std::size_t stackBytes = std::size_t(1) << 20;
+constexpr bool threadsEndBeforeLibraries = true;
+#else
+constexpr std::size_t stackBytes = std::size_t(8) << 20;
+constexpr bool threadsEndBeforeLibraries = false;
+#endif
+
 /// An open file; the user closes it.
 struct File
 {

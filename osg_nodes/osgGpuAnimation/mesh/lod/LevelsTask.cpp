@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/math/detail/System.h>
 #include <osgGpuAnimation/mesh/detail/MeshDetail.h>
 #include <osgGpuAnimation/mesh/lod/LevelsTask.h>
 
@@ -105,8 +106,16 @@ public:
     static void add(const std::shared_ptr<Work>& work)
     {
         if (isGone()) return; // the process ends; wait() still works
-        static Worker worker;
-        worker.append(work);
+        if constexpr (system::threadsEndBeforeLibraries)
+        {
+            static Worker* const kept = new Worker; // nothing could wait for its thread
+            kept->append(work);
+        }
+        else
+        {
+            static Worker worker;
+            worker.append(work);
+        }
     }
 
 private:

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/math/detail/System.h>
+
 #include <osg/Group>
 #include <osg/NodeVisitor>
 
@@ -12,8 +14,8 @@
 namespace osgGpuAnimation
 {
 
-/// The largest number of nodes from a root of a file to a leaf, for the import and the export.
-constexpr std::size_t maxNodeDepth = 4096;
+/// The largest number of nodes from a root of a file to a leaf, for the import and the export: 4096, on Windows 512.
+constexpr std::size_t maxNodeDepth = system::stackBytes / 2048;
 
 /// Ends traversals of broken scenes: those with a group below itself, with more paths than memory, or deeper than the
 /// call stack.

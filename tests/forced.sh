@@ -13,20 +13,23 @@ programs=("${@:2}")
 [ ${#programs[@]} -gt 0 ] || programs=("${gl_tests[@]}")
 export OSGGPUANIMATION_REQUIRE_GL=1
 faults=0
+ran=0
 
 # run WAY FILTER VARIABLE...
 run()
 {
-    local program log
+    local program log before=$ran
     log=$(mktemp)
     for program in "${programs[@]}"; do
         if ! env "${@:3}" "$folder/$program" --gtest_filter="$2" >"$log" 2>&1; then
             faults=$((faults + 1))
             cat "$log"
         fi
+        ran=$((ran + $(grep -aoE '^\[==========\] Running [0-9]+' "$log" | grep -oE '[0-9]+')))
         echo "$1, $program: $(grep -aE '^\[  (PASSED|FAILED)  \] [0-9]+ test' "$log" | paste -sd' ')"
     done
     rm -f "$log"
+    [ "$ran" -gt "$before" ] || { echo "$1: no test ran"; faults=$((faults + 1)); }
 }
 
 # glslangValidator reads the same programs in each way.

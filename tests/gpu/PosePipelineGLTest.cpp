@@ -225,6 +225,25 @@ TEST_F(PosePipelineCostGLTest, sendsTheRootsThatMovedAlone)
     }
 }
 
+/// As ctest's lesserDriver tests and tests/forced.sh set it up.
+TEST_F(PosePipelineCostGLTest, seesALesserDriver)
+{
+    const auto variable = [](const char* name) -> std::string
+    {
+        const char* const value = std::getenv(name);
+        return value ? value : "";
+    };
+    if (variable("MESA_EXTENSION_OVERRIDE").find("-GL_ARB_base_instance") != std::string::npos)
+    {
+        EXPECT_FALSE(pipeline->options().usesBaseInstances);
+        EXPECT_EQ(std::string(reinterpret_cast<const char*>(glGetString(GL_VERSION))).substr(0, 3), "3.3");
+    }
+    if (const std::string texels = variable("OSGGPUANIMATION_MAX_TEXELS"); !texels.empty())
+    {
+        EXPECT_EQ(std::to_string(pipeline->options().maxTexels), texels);
+    }
+}
+
 /// The vertex array object keeps what a batch has bound, for the batches of other sets, roots and samples after it too.
 TEST_F(PosePipelineCostGLTest, batchesByTurnsKeepTheirOwnInputsWithAndWithoutBaseInstances)
 {

@@ -3,8 +3,9 @@
 
 #include "assimp/FbxConversion.h"
 #include "assimp/SceneConversion.h"
-#include "gltf/file/ModelBytes.h"
 #include "gltf/file/Uri.h"
+
+#include <osgGpuAnimation/math/detail/RegularFile.h>
 
 #include <assimp/config.h>
 #include <assimp/DefaultIOSystem.h>

@@ -153,7 +153,9 @@ private:
             const Result<RegularFile> file = _folder.openPath(place);
             if (!file) continue;
             if (file.value().size() > maxBytes) return Error{"has more than " + std::to_string(maxBytes) + " bytes"};
-            return file.value().readWhole();
+            Result<std::string> bytes = file.value().readWhole();
+            if (!bytes) return Error{gltf::quoted(place) + ": " + bytes.error().message};
+            return bytes;
         }
         return Error{"is neither in the file nor beside it"};
     }

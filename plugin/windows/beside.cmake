@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-# Run by CPack before it makes the ZIP: OSG's viewer, converter, libraries and plugins, and what they and ours need, come to
-# lie beside the programs, except for the system's own libraries.
+# CPack runs this before it makes the ZIP. It copies OSG's viewer, converter, libraries and plugins, and all libraries that
+# these and ours need except the system's, beside the programs.
 set(programs "${CPACK_TEMPORARY_DIRECTORY}/${CPACK_PROGRAMS}")
-file(INSTALL "${CPACK_OSG_FOLDER}/bin/osgviewer.exe" "${CPACK_OSG_FOLDER}/bin/osgconv.exe" DESTINATION "${programs}")
+file(INSTALL "${CPACK_OSG_FOLDER}/bin/osgviewer.exe" "${CPACK_OSG_FOLDER}/bin/osgconv.exe" DESTINATION "${programs}" OPTIONAL)
 file(INSTALL "${CPACK_OSG_FOLDER}/bin/" DESTINATION "${programs}" FILES_MATCHING PATTERN *.dll)
 file(GLOB executables "${programs}/*.exe")
 file(GLOB libraries "${programs}/*.dll")

@@ -18,7 +18,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <random>
+#include <string>
 #include <utility>
 
 namespace osgGpuAnimation
@@ -225,7 +227,7 @@ TEST_F(PosePipelineCostGLTest, sendsTheRootsThatMovedAlone)
     }
 }
 
-/// As ctest's lesserDriver tests and tests/forced.sh set it up.
+/// Fails if the environment asks for a lesser driver and the driver ignores it.
 TEST_F(PosePipelineCostGLTest, seesALesserDriver)
 {
     const auto variable = [](const char* name) -> std::string

@@ -26,7 +26,8 @@ configure_release -DBUILD_TESTING=ON "${off[@]}"
 build_targets plugins gpu_tests plugin_tests
 export OSG_LIBRARY_PATH=$build/lib OSGGPUANIMATION_REQUIRE_GL=1
 for program in gpu_tests plugin_tests; do
-    xvfb-run -a "$build/bin/$program" --gtest_brief=1 --gtest_filter="-$(IFS=: && echo "${without[*]}")"
+    # Without -noreset the server starts anew, and refuses programs meanwhile, whenever a test closes its only display.
+    xvfb-run -a -s -noreset "$build/bin/$program" --gtest_brief=1 --gtest_filter="-$(IFS=: && echo "${without[*]}")"
 done
 ctest --test-dir "$build" --no-tests=error --output-on-failure -R '^osgviewer\.'
 

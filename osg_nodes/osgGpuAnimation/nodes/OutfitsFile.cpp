@@ -35,7 +35,7 @@ std::string pathOf(const Json& json, const std::string& where, const std::string
 {
     expect(json.is_string(), where, "a string", json);
     const std::filesystem::path path = json.get<std::string>();
-    bool isBelow = path.is_relative() && !path.empty();
+    bool isBelow = !path.has_root_path() && !path.empty();
     for (const std::filesystem::path& part : path)
         isBelow = isBelow && part != "..";
     if (!isBelow) throw JsonFault{where + ": \"" + path.string() + "\" is not in the folder of the file"};

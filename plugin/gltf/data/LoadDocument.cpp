@@ -38,7 +38,7 @@ Result<Bytes> readFile(std::string_view uri, std::size_t byteLength, const Model
                      std::to_string(file.value().size())};
     Bytes bytes(byteLength);
     const Result<std::size_t> read = file.value().read(bytes.data(), byteLength);
-    if (!read) return read.error();
+    if (!read) return Error{quoted(uri) + ": " + read.error().message};
     return bytes;
 }
 

@@ -52,7 +52,7 @@ Result<Bytes> readFile(std::string_view uri, const ModelFolder& folder, MemoryBu
     if (!budget.take(file.value().size())) return tooLarge(budget, file.value().size());
     Bytes bytes(file.value().size());
     const Result<std::size_t> read = file.value().read(bytes.data(), bytes.size());
-    if (!read) return read.error();
+    if (!read) return Error{quoted(uri) + ": " + read.error().message};
     return bytes;
 }
 

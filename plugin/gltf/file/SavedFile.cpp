@@ -68,6 +68,7 @@ bool isOfFolder(int code)
 } // namespace
 
 Result<void> saveFile(const std::string& file, std::string_view bytes)
+try
 {
     std::error_code failure;
     const fs::file_status status = fs::status(file, failure);
@@ -76,6 +77,10 @@ Result<void> saveFile(const std::string& file, std::string_view bytes)
     if (code == 0 && !isSpecial) code = replaceFile(linkTarget(file), status, bytes);
     if (isOfFolder(code) || (code == 0 && isSpecial)) code = writeBytes(std::fopen(file.c_str(), "wb"), bytes);
     return code == 0 ? Result<void>() : Error{std::string("cannot be written: ") + std::strerror(code)};
+}
+catch (const std::system_error& fault) // on Windows not every text can be a file name
+{
+    return Error{"cannot be written: " + fault.code().message()};
 }
 
 } // namespace osgGpuAnimation::gltf

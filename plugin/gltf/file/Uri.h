@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "gltf/file/ModelBytes.h"
-
+#include <osgGpuAnimation/math/detail/RegularFile.h>
 #include <osgGpuAnimation/math/Result.h>
 
 #include <cstddef>

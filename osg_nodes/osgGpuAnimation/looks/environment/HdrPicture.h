@@ -27,7 +27,7 @@ constexpr int maxHdrHeight = 8192;
 Result<osg::ref_ptr<osg::Image>> decodeHdr(std::string_view bytes);
 
 /// The same from a file, by its name alone (no search path). Errors start with the name of the file; further ones: it
-/// does not exist, is not a regular file, is larger than 1 GiB or cannot be read.
+/// does not exist, is not a regular file, is empty, is larger than 1 GiB or cannot be read.
 Result<osg::ref_ptr<osg::Image>> readHdrFile(const std::string& file);
 
 } // namespace osgGpuAnimation

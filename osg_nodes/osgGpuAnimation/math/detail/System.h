@@ -8,19 +8,22 @@
 #include <cstdio>
 #include <string>
 
-/// What C++17 does not offer, with one implementation a system: in posix/ and windows/. Errors do not name the file.
+/// What C++17 does not offer, with one implementation a system, in posix/ and windows/, and what
+/// systems do otherwise. Errors do not name the file.
 namespace osgGpuAnimation::system
 {
 
-/// The usual stack of a program's first thread, for recursive traversals; and whether the system has ended all other
-/// threads, wherever they were, before the static objects of a library are destroyed.
 #ifdef _WIN32
-constexpr std::size_t stackBytes = std::size_t(1) << 20;
-constexpr bool threadsEndBeforeLibraries = true;
+constexpr bool isWindows = true;
 #else
-constexpr std::size_t stackBytes = std::size_t(8) << 20;
-constexpr bool threadsEndBeforeLibraries = false;
+constexpr bool isWindows = false;
 #endif
+
+/// The stack that recursive traversals may count on.
+constexpr std::size_t stackBytes = std::size_t(isWindows ? 1 : 8) << 20;
+
+/// True: at the end of a process the system ends all other threads before it destroys static objects of libraries.
+constexpr bool threadsEndBeforeLibraries = isWindows;
 
 /// An open file; the user closes it.
 struct File

@@ -108,7 +108,7 @@ public:
         if (isGone()) return; // the process ends; wait() still works
         if constexpr (system::threadsEndBeforeLibraries)
         {
-            static Worker* const kept = new Worker; // nothing could wait for its thread
+            static Worker* const kept = new Worker; // its thread is gone when it would be destroyed
             kept->append(work);
         }
         else

@@ -30,8 +30,9 @@ public:
         Once,    ///< a group is entered the first time only, so that cycles end, too
         EachPath ///< a group is entered on each path, except below itself
     };
-    static constexpr std::size_t maxRecursion = maxNodeDepth + 256; ///< nodes on a path: imported scenes add a few
-    static constexpr std::size_t maxPaths = 1'000'000;              ///< to groups, with Shared::EachPath
+    /// Nodes on a path: imported scenes add a few.
+    static constexpr std::size_t maxRecursion = maxNodeDepth + maxNodeDepth / 16;
+    static constexpr std::size_t maxPaths = 1'000'000; ///< to groups, with Shared::EachPath
 
     /// maxDepth: nodes on a path; the default suits recursive traversals.
     explicit SceneGuard(Shared shared, std::size_t maxDepth = maxRecursion) : _shared(shared), _maxDepth(maxDepth) {}

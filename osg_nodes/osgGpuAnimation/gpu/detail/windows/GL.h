@@ -7,7 +7,7 @@
 
 #include <GL/glext.h>
 
-// Macros of windows.h, which MinGW's gl.h includes, that are names in OSG's headers and in our sources.
+// MinGW's gl.h includes windows.h. These macros of it are names in OSG's headers and in our sources.
 #undef RELATIVE
 #undef far
 #undef near

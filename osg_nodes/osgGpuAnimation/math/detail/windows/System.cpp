@@ -27,7 +27,7 @@ std::string lastError()
     return std::system_category().message(static_cast<int>(GetLastError()));
 }
 
-/// Empty, which no function opens: the path is no text of the system's code page.
+/// Empty if the path is not valid UTF-8 (MinGW) or ANSI text (MSVC); no function opens an empty path.
 std::wstring asWide(const std::string& path)
 {
     try

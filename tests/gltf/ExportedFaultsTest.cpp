@@ -5,13 +5,12 @@
 #include "serializers/RoundTrip.h"
 #include "support/ClipSets.h"
 
-#include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
-
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/looks/CharacterProgram.h>
 #include <osgGpuAnimation/looks/PbrMaterial.h>
 #include <osgGpuAnimation/looks/shading/PunctualLight.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
 #include <gtest/gtest.h>
 #include <osg/CameraView>

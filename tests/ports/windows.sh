@@ -57,7 +57,7 @@ build_small_libraries()
 build_osg()
 {
     local libraries=(OpenThreads osg osgUtil osgDB osgGA osgText osgViewer osgAnimation osgShadow osgFX)
-    local formats=(osg shadow png rgb bmp tga hdr rot)
+    local formats=(osg osgshadow png jpeg rgb bmp tga hdr rot)
     local plugins=("${formats[@]/#/osgdb_}" osgdb_serializers_osg{,util,ga,text,viewer,animation,shadow,fx})
     local source=$folder/sources/openscenegraph
     # What CMake would find out by running programs; C++14, because OSG has names that C++17 has, too (byte).

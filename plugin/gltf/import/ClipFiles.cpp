@@ -4,6 +4,7 @@
 #include "gltf/data/LoadDocument.h"
 #include "gltf/document/JsonReader.h"
 #include "gltf/file/Elements.h"
+#include "gltf/file/ModelBytes.h"
 #include "gltf/file/Uri.h"
 #include "gltf/import/Clips.h"
 #include "gltf/import/Joints.h"

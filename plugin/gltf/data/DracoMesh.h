@@ -25,7 +25,7 @@ public:
     /// Errors (`expected …, found …`): no such stream, another number of triangles, faulty data.
     static Result<DracoMesh> decode(const unsigned char* data, std::size_t bytes, std::size_t faces);
 
-    DracoMesh(DracoMesh &&) noexcept;
+    DracoMesh(DracoMesh&&) noexcept;
     DracoMesh& operator=(DracoMesh&&) noexcept;
     ~DracoMesh();
 
@@ -34,8 +34,8 @@ public:
     std::vector<std::uint32_t> indices() const;
     /// The values of an attribute, vertex after vertex, as numbers of a glTF component type (5120 …).
     /// Errors: there is no such attribute, it has another number of components, a value does not fit.
-    Result<std::vector<unsigned char>> attribute(std::uint32_t uniqueId, std::size_t components, int componentType)
-        const;
+    Result<std::vector<unsigned char>> attribute(std::uint32_t uniqueId, std::size_t components,
+                                                 int componentType) const;
 
 private:
     explicit DracoMesh(std::unique_ptr<draco::Mesh> mesh);

@@ -89,7 +89,7 @@ constexpr unsigned int steps = aiProcess_Triangulate | aiProcess_SortByPType | a
 
 Result<const aiScene*> readFbx(Assimp::Importer& importer, const std::string& fileName, gltf::Report& report)
 {
-    Result<std::string> content = RegularFile::readWhole(fileName);
+    Result<std::string> content = RegularFile::readWhole(fileName, maxFileBytes);
     if (!content) return content.error();
     const Result<fbx::Scene> fbx = fbx::Scene::read(std::move(content).value());
     if (!fbx) return fbx.error();

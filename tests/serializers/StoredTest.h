@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <regex>
 #include <string>
 
@@ -57,9 +58,11 @@ protected:
     osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::WARN);
 };
 
-/// A text in which the first match of a pattern is replaced. The test fails without one.
-inline std::string replaced(const std::string& text, const char* pattern, const char* instead)
+/// A text in which the first match of a pattern is replaced. The test fails without one. Lines end with LF, though
+/// Windows writes CR LF.
+inline std::string replaced(std::string text, const char* pattern, const char* instead)
 {
+    text.erase(std::remove(text.begin(), text.end(), '\r'), text.end());
     const auto once = std::regex_constants::format_first_only;
     const std::string made = std::regex_replace(text, std::regex(pattern), instead, once);
     EXPECT_NE(made, text) << "the pattern is not in the file: " << pattern;

@@ -10,6 +10,8 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
+const std::uint64_t maxBytesOfAFile = std::uint64_t(1) << 32; // a GLB stores its length in 32 bits
+
 const std::string_view magic = "glTF";
 const std::size_t headerBytes = 12;
 const std::size_t chunkHeaderBytes = 8;
@@ -128,7 +130,7 @@ Result<std::string> readModelFile(const std::string& path, const ImportOptions& 
     const Result<RegularFile> file = RegularFile::open(path);
     if (!file) return file.error();
     if (const std::optional<Error> error = checkBeginning(file.value(), options.maxJsonBytes)) return *error;
-    return file.value().readWhole();
+    return file.value().readWhole(maxBytesOfAFile);
 }
 
 Result<std::string> readModelStream(std::istream& stream, const ImportOptions& options, std::size_t maxBytes)

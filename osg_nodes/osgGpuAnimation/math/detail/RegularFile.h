@@ -15,11 +15,9 @@ namespace osgGpuAnimation
 class RegularFile
 {
 public:
-    static constexpr std::uint64_t maxModelBytes = std::uint64_t(1) << 32; ///< a GLB stores its length in 32 bits
-
     static Result<RegularFile> open(const std::string& path);
     /// All of a file of at most maxBytes bytes. Errors: open()'s and readWhole()'s.
-    static Result<std::string> readWhole(const std::string& path, std::uint64_t maxBytes = maxModelBytes);
+    static Result<std::string> readWhole(const std::string& path, std::uint64_t maxBytes);
 
     RegularFile(RegularFile&& other) noexcept;
     RegularFile& operator=(RegularFile&&) = delete;
@@ -31,7 +29,7 @@ public:
     /// Reads the first `bytes` bytes into `to`. Errors: the file cannot be read or is shorter.
     Result<std::size_t> read(void* to, std::size_t bytes) const;
     /// Reads the whole file. Errors: it is empty, has more than maxBytes or cannot be read.
-    Result<std::string> readWhole(std::uint64_t maxBytes = maxModelBytes) const;
+    Result<std::string> readWhole(std::uint64_t maxBytes) const;
 
 private:
     RegularFile(std::intptr_t handle, std::size_t size) : _handle(handle), _size(size) {}

@@ -470,8 +470,8 @@ TEST(MeshesTest, blendedTrianglesKeepTheirOrder)
             mapVariant(file.primitive(0));
             ReadMeshes read(file);
             const std::vector<unsigned int> found = indicesOf(*read.meshes.primitive(0, 0, true));
-            EXPECT_EQ(found == corners, std::string(own) + inVariant != "OPAQUEOPAQUE" && *own != 'M')
-                << own << inVariant;
+            const bool isBlended = *own == 'B' || *inVariant == 'B';
+            EXPECT_EQ(found == corners, isBlended || !OSGGPUANIMATION_WITH_MESHOPTIMIZER) << own << inVariant;
         }
 }
 
@@ -485,7 +485,7 @@ TEST(MeshesTest, trianglesAreReorderedForTheVertexCache)
         indices.insert(indices.end(), triangle.begin(), triangle.end());
     EXPECT_GT(shadedVertices(indices), 4u * side * side);
     optimizeForVertexCache(indices, side * side);
-    EXPECT_LT(shadedVertices(indices), 3u * side * side / 2);
+    if (OSGGPUANIMATION_WITH_MESHOPTIMIZER) EXPECT_LT(shadedVertices(indices), 3u * side * side / 2);
     std::sort(triangles.begin(), triangles.end());
     EXPECT_EQ(sortedTriangles(indices), triangles);
     std::vector<std::uint32_t> fan; // would take hours

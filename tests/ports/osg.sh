@@ -74,7 +74,7 @@ export OSG_DIR=$osg LD_LIBRARY_PATH=$osg/lib
 if [ $variant = static ]; then
     # Static libraries need each other, and the system's; -DOSG_LIBRARY_STATIC makes main.cpp name OSG's plugins.
     libraries=("$osg"/lib/*.a) # the plugins are among them
-    others=(-lpng -ljpeg -lz -lfontconfig -lX11 -lXrandr -lXinerama -lXext -lGL -ldl -lpthread)
+    others=(-lpng -ljpeg -lz -lfontconfig -lX11 -lXrandr -lXext -lGL -ldl -lpthread)
     cmake -S "$root/tests/install/embedded" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DOSGGPUANIMATION_UNITY=ON \
         -DCMAKE_CXX_FLAGS=-DOSG_LIBRARY_STATIC \
         "-DCMAKE_CXX_STANDARD_LIBRARIES=-Wl,--start-group ${libraries[*]} -Wl,--end-group ${others[*]}"

@@ -125,7 +125,7 @@ public:
     std::uint64_t motions() const { return _motions; }
     /// Identifies this object and no copy.
     const std::shared_ptr<const void>& identity() const { return _identity; }
-    /// Snapshots for frames, by index. Tints: empty if all are white.
+    /// Snapshots for frames, by index. Tints: null if all are white.
     SharedBlocks<AffineMatrix>::Snapshot placements() const { return _rootMatrices.snapshot(); }
     SharedBlocks<std::uint32_t>::Snapshot tints() const
     {

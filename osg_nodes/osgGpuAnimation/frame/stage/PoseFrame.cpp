@@ -214,9 +214,9 @@ DrawState PoseFrame::placedState(const AnimationSet& set, std::size_t slot,
 {
     const std::lock_guard<std::mutex> lock(_mutex);
     const PoseBatch& batch = *_batchesOfSet[&set][slot]->content;
-    const bool isShared = !placed->placements.empty();
+    const bool isShared = placed->placements != nullptr;
     const DrawState state = nextState(isShared ? OfSharedPoses : OfListedPoses,
-                                      !(isShared ? placed->tints.empty() : batch.tints().empty()));
+                                      isShared ? placed->tints != nullptr : !batch.tints().empty());
     state.binding->setPlaced(batch.sharedSet(), slot, placed, first, count);
     state.binding->setLevel(level);
     return state;

@@ -24,13 +24,14 @@ PlacedInstanceBuffers& PlacedInstanceBuffers::of(osg::State& state)
 
 /// Uploads the blocks that have changed, side by side ones together.
 template <typename Element>
-void PlacedInstanceBuffers::upload(const typename SharedBlocks<Element>::Snapshot& blocks, Blocks& uploaded)
+void PlacedInstanceBuffers::upload(const typename SharedBlocks<Element>::Snapshot& content, Uploaded<Element>& uploaded)
 {
-    using Block = typename SharedBlocks<Element>::Block;
-    constexpr std::size_t bytes = sizeof(Block::elements);
-    if (uploaded.buffer->reserve(blocks.size() * bytes)) uploaded.serials.clear(); // new storage is empty
-    uploaded.serials.resize(blocks.size(), 0);
-    const auto isNew = [&](std::size_t block) { return uploaded.serials[block] != blocks[block]->serial; };
+    if (uploaded.content == content) return;
+    constexpr std::size_t bytes = sizeof(typename SharedBlocks<Element>::Block);
+    const typename SharedBlocks<Element>::Blocks& blocks = *content;
+    if (uploaded.buffer->reserve(blocks.size() * bytes)) uploaded.content.reset(); // new storage is empty
+    const auto isNew = [&](std::size_t block)
+    { return !uploaded.content || block >= uploaded.content->size() || (*uploaded.content)[block] != blocks[block]; };
     std::vector<Element> changed;
     for (std::size_t first = 0; first < blocks.size(); ++first)
     {
@@ -38,10 +39,7 @@ void PlacedInstanceBuffers::upload(const typename SharedBlocks<Element>::Snapsho
         std::size_t end = first;
         changed.clear();
         for (; end < blocks.size() && isNew(end); ++end)
-        {
-            changed.insert(changed.end(), blocks[end]->elements.begin(), blocks[end]->elements.end());
-            uploaded.serials[end] = blocks[end]->serial;
-        }
+            changed.insert(changed.end(), blocks[end]->begin(), blocks[end]->end());
         // All of it at once does not wait for earlier draws.
         if (end - first == blocks.size())
             uploaded.buffer->upload(changed.data(), blocks.size() * bytes);
@@ -50,6 +48,7 @@ void PlacedInstanceBuffers::upload(const typename SharedBlocks<Element>::Snapsho
         _bytesUploaded += (end - first) * bytes;
         first = end;
     }
+    uploaded.content = content;
 }
 
 const BufferTexture& PlacedInstanceBuffers::listBuffer(const std::shared_ptr<const PlacedInstances>& placed)
@@ -70,19 +69,19 @@ PlacedInstanceBuffers::Textures PlacedInstanceBuffers::textures(const std::share
                                                                 std::size_t maxTexels)
 {
     forgetUnused();
-    const std::size_t placementTexels =
-        placed->placements.size() * SharedBlocks<AffineMatrix>::blockSize * POSE_TEXELS_PER_MATRIX;
+    const std::size_t placementTexels = (placed->placements ? placed->placements->size() : 0) *
+                                        SharedBlocks<AffineMatrix>::blockSize * POSE_TEXELS_PER_MATRIX;
     if (std::max(placementTexels, placed->drawn.size()) > maxTexels) return {};
-    if (placed->placements.empty()) return {listBuffer(placed).texture(), 0, 0};
+    if (!placed->placements) return {listBuffer(placed).texture(), 0, 0};
     Crowd& crowd = _crowds[placed->crowd.get()];
     if (!crowd.placements.buffer)
         crowd = {placed->crowd,
-                 {std::make_unique<BufferTexture>(*_gl, GL_RGBA32F_ARB), {}},
-                 {std::make_unique<BufferTexture>(*_gl, GL_RGBA8), {}}};
-    upload<AffineMatrix>(placed->placements, crowd.placements);
-    if (!placed->tints.empty()) upload<std::uint32_t>(placed->tints, crowd.tints);
+                 {std::make_unique<BufferTexture>(*_gl, GL_RGBA32F_ARB)},
+                 {std::make_unique<BufferTexture>(*_gl, GL_RGBA8)}};
+    upload(placed->placements, crowd.placements);
+    if (placed->tints) upload(placed->tints, crowd.tints);
     return {listBuffer(placed).texture(), crowd.placements.buffer->texture(),
-            placed->tints.empty() ? 0 : crowd.tints.buffer->texture()};
+            placed->tints ? crowd.tints.buffer->texture() : 0};
 }
 
 void PlacedInstanceBuffers::forgetUnused()

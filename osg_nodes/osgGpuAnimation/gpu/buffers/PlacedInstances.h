@@ -35,8 +35,8 @@ struct PlacedInstances
     std::shared_ptr<const void> crowd;               ///< identifies the crowd, whose placements stay on the GPU
     std::vector<Drawn> drawn;                        ///< level by level, see OutfitLists
     std::size_t poseCount = 0;                       ///< above the poses of all
-    SharedBlocks<AffineMatrix>::Snapshot placements; ///< from the character's space to that of the draw; may be empty
-    SharedBlocks<std::uint32_t>::Snapshot tints;     ///< see PoseBatch::setTint(); empty: all are white
+    SharedBlocks<AffineMatrix>::Snapshot placements; ///< from the character's space to that of the draw; may be null
+    SharedBlocks<std::uint32_t>::Snapshot tints;     ///< see PoseBatch::setTint(); null: all are white
 };
 
 /// The buffers of PlacedInstances in one graphics context. Lists and blocks that have not changed are not uploaded
@@ -70,17 +70,18 @@ protected:
     ~PlacedInstanceBuffers() override = default;
 
 private:
-    /// A buffer with the content of blocks.
-    struct Blocks
+    /// A buffer with the content of a snapshot; null: with none.
+    template <typename Element>
+    struct Uploaded
     {
         std::unique_ptr<BufferTexture> buffer;
-        std::vector<std::uint64_t> serials; ///< of the uploaded blocks
+        typename SharedBlocks<Element>::Snapshot content{};
     };
     struct Crowd
     {
         std::weak_ptr<const void> crowd;
-        Blocks placements;
-        Blocks tints;
+        Uploaded<AffineMatrix> placements;
+        Uploaded<std::uint32_t> tints;
     };
     struct List
     {
@@ -89,7 +90,7 @@ private:
     };
 
     template <typename Element>
-    void upload(const typename SharedBlocks<Element>::Snapshot& blocks, Blocks& uploaded);
+    void upload(const typename SharedBlocks<Element>::Snapshot& content, Uploaded<Element>& uploaded);
     const BufferTexture& listBuffer(const std::shared_ptr<const PlacedInstances>& placed);
     void forgetUnused();
     template <typename Function>

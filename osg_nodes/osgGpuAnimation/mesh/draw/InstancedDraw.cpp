@@ -280,8 +280,8 @@ void InstanceRuns::usePiece(std::size_t first) const
         const PlacedInstances::Drawn& drawn = placed->drawn[pose];
         constexpr std::size_t blockSize = SharedBlocks<AffineMatrix>::blockSize;
         const std::size_t block = drawn.index() / blockSize;
-        if (block < placed->placements.size())
-            toEye.preMult(toOsg(placed->placements[block]->elements[drawn.index() % blockSize]));
+        if (placed->placements && block < placed->placements->size())
+            toEye.preMult(toOsg((*(*placed->placements)[block])[drawn.index() % blockSize]));
         pose = drawn.pose;
     }
     else if (_transforms)

@@ -52,10 +52,10 @@ void addStill(const gltf::ImportedModel& model, std::vector<osg::Vec3d>& points)
 }
 
 /// The vertices of the character in its current pose.
-void addMoving(const gltf::ImportedModel& model, PoseEvaluator& evaluator, std::vector<osg::Vec3d>& points)
+void addMoving(const gltf::ImportedModel& model, const PoseEvaluator& evaluator, std::vector<osg::Vec3d>& points)
 {
     const osg::MatrixList places = model.character->getWorldMatrices();
-    const Result<EvaluatedPose> pose = evaluator.evaluate(model.character->getController().instruction(), {});
+    const Result<EvaluatedPose> pose = evaluator.evaluate(model.character->getController().instruction());
     if (!pose || places.empty()) return;
     for (const std::vector<glm::dvec3>& positions : pose.value().positions)
         for (const glm::dvec3& position : positions)
@@ -69,12 +69,12 @@ std::vector<osg::Vec3d> pointsOf(const gltf::ImportedModel& model, const std::ve
     std::vector<osg::Vec3d> points;
     addStill(model, points);
     if (!model.character) return points;
-    const std::unique_ptr<PoseEvaluator> evaluator = cpuPoseEvaluator(model);
+    const PoseEvaluator evaluator = cpuPoseEvaluator(model);
     const std::size_t looks = std::min<std::size_t>(times.size(), 64);
     for (std::size_t look = 0; look < looks; ++look)
     {
         showTime(model.character->getController(), times[look * times.size() / looks]);
-        addMoving(model, *evaluator, points);
+        addMoving(model, evaluator, points);
     }
     return points;
 }

@@ -1,45 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "ModelReader.h"
 
+#ifdef OSGGPUANIMATION_ASSIMP
+#include "assimp/ConversionProcess.h"
+#endif
+
 #include <osg/Notify>
-#include <osg/UserDataContainer>
-#include <osg/ValueObject>
 #include <osgDB/FileNameUtils>
 #include <osgDB/FileUtils>
-#include <osgDB/Registry>
 
 #include <new>
 
 namespace osgGpuAnimation
 {
-
-namespace
-{
-
-Result<std::string> readThroughAssimp(const std::string& path, const gltf::ImportOptions& options, gltf::Report& report)
-{
-    osgDB::ReaderWriter* const reader = osgDB::Registry::instance()->getReaderWriterForExtension("assimp");
-    if (!reader) return Error{"the file is no glTF, and the plugin for other formats, osgdb_assimp, is not installed"};
-    const osg::ref_ptr<osgDB::Options> request =
-        new osgDB::Options("maxDecodedBytes=" + std::to_string(options.maxDecodedBytes) +
-                           " maxNodeDepth=" + std::to_string(options.maxNodeDepth) +
-                           (options.allowOutsideFiles ? " allowOutsideFiles" : ""));
-    request->setPluginStringData(glbRequest, "1");
-    osgDB::ReaderWriter::ReadResult read = reader->readObject(path + ".assimp", request);
-    auto* const glb = dynamic_cast<osg::StringValueObject*>(read.getObject());
-    if (!glb) return Error{read.message().empty() ? "the plugin osgdb_assimp cannot read it" : read.message()};
-    if (const osg::UserDataContainer* const warnings = glb->getUserDataContainer())
-        for (const std::string& warning : warnings->getDescriptions())
-            report.warn(warning);
-    return glb->getValue();
-}
-
-} // namespace
-
-gltf::OtherFormats ModelReader::otherFormats() const
-{
-    return readThroughAssimp;
-}
 
 Result<gltf::ImportOptions> importOptionsOf(const osgDB::Options* options)
 {
@@ -80,7 +53,9 @@ osgDB::ReaderWriter::ReadResult ModelReader::import(const std::string& bytes, co
     for (const std::string& hint : gltf::misspeltOptions(given, gltf::optionHelp()))
         OSG_WARN << className() << ": " << hint << std::endl;
     gltf::ImportOptions own = importOptions;
-    own.otherFormats = otherFormats();
+#ifdef OSGGPUANIMATION_ASSIMP
+    own.otherFormats = assimp::readAsGlbApart;
+#endif
     const Result<gltf::ImportedModel> model = gltf::importModel(bytes, fileName, own);
     if (!model) return ReadResult(model.error().message);
     const std::string subject = fileName.empty() ? "glTF stream" : fileName;

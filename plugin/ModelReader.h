@@ -31,16 +31,9 @@ protected:
     /// The file that a name asks for.
     virtual std::string modelFile(const std::string& fileName) const { return fileName; }
 
-    /// Reads the clips of other formats for readGltf()'s models; here through the plugin osgdb_assimp, if there is one.
-    virtual gltf::OtherFormats otherFormats() const;
-
     ReadResult import(const std::string& bytes, const std::string& fileName, const Options* options,
                       const gltf::ImportOptions& importOptions, const gltf::Messages& messages) const;
 };
-
-/// The key of Options::setPluginStringData() for osgdb_assimp: readObject() then returns an osg::StringValueObject, the
-/// file as GLB, with the warnings as descriptions. osgdb_gltf, which is not linked with Assimp, asks so.
-constexpr const char* glbRequest = "osgGpuAnimation.glb";
 
 /// The import's choices in osgDB's option string; see gltf::parseOptions().
 Result<gltf::ImportOptions> importOptionsOf(const osgDB::Options* options);

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "assimp/FbxConversion.h"
 
-#include "assimp/NodeMarks.h"
-#include "assimp/SampledTrack.h"
-
-#include <assimp/scene.h>
+#include <osgGpuAnimation/authoring/keyframes/SampledTrack.h>
 
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -59,14 +56,6 @@ glm::dvec3 inverseScale(const glm::dvec3& scale)
     return inverse;
 }
 
-double maxMagnitude(const std::vector<double>& numbers)
-{
-    double max = 0.0;
-    for (const double each : numbers)
-        max = std::max(max, std::abs(each));
-    return max;
-}
-
 void replaceChild(aiNode& parent, const aiNode& child, aiNode& with)
 {
     std::replace(parent.mChildren, parent.mChildren + parent.mNumChildren, const_cast<aiNode*>(&child), &with);
@@ -99,6 +88,34 @@ const fbx::ModelTracks* tracksOf(const fbx::Take& take, int model)
     const auto found = std::lower_bound(take.models.begin(), take.models.end(), number,
                                         [](const fbx::ModelTracks& each, std::size_t to) { return each.model < to; });
     return found != take.models.end() && found->model == number ? &*found : nullptr;
+}
+
+/// Keys of the take from time 0 on. times: where the function bends or jumps, in any order; only those within the take
+/// count. distance(a, b) is compared with the tolerance; with a magnitude, the tolerance is relative to the largest one
+/// at these times.
+template <class Function, class Between, class Distance, class Magnitude>
+auto keysOf(const fbx::Take& take, std::vector<double> times, const Function& function, const Between& between,
+            const Distance& distance, double tolerance, const Magnitude& magnitude)
+{
+    times.insert(times.end(), {take.begin, take.end});
+    std::sort(times.begin(), times.end()); // curves of one track share many
+    times.erase(std::unique(times.begin(), times.end()), times.end());
+    times.erase(std::upper_bound(times.begin(), times.end(), take.end), times.end());
+    times.erase(times.begin(), std::lower_bound(times.begin(), times.end(), take.begin));
+    double size = 0.0;
+    for (const double time : times)
+        size = std::max(size, static_cast<double>(magnitude(function(time, false))));
+    const auto inTake = [&](double time, bool before)
+    { return function(time, before || (time >= take.end && time > take.begin)); };
+    const auto deviation = [&](const auto& a, const auto& b)
+    {
+        const double apart = distance(a, b);
+        return apart > 0.0 ? apart / (tolerance * size) : 0.0;
+    };
+    auto keys = sampledTrack(times, inTake, between, deviation, 1.0);
+    for (auto& key : keys)
+        key.first -= take.begin;
+    return keys;
 }
 
 using VectorKeys = std::vector<std::pair<double, glm::dvec3>>;
@@ -160,17 +177,18 @@ struct Motion
             const glm::dquat difference = glm::conjugate(a) * b; // the acos of the product is inexact near 1
             return 2.0 * std::asin(std::min(1.0, glm::length(glm::dvec3(difference.x, difference.y, difference.z))));
         };
-        return sampledTrack(std::move(times), take.begin, take.end, rotation, slerped, angle, rotationTolerance);
+        return keysOf(take, std::move(times), rotation, slerped, angle, rotationTolerance,
+                      [](const glm::dquat&) { return 1.0; });
     }
 
     template <class Function>
     static VectorKeys vectors(std::vector<double> times, const fbx::Take& take, const Function& function)
     {
-        return relativeTrack(
-            std::move(times), take.begin, take.end, function,
+        return keysOf(
+            take, std::move(times), function,
             [](const glm::dvec3& a, const glm::dvec3& b, double share) { return glm::mix(a, b, share); },
-            [](const glm::dvec3& a, const glm::dvec3& b) { return glm::length(a - b); },
-            [](const glm::dvec3& vector) { return glm::length(vector); }, relativeTolerance);
+            [](const glm::dvec3& a, const glm::dvec3& b) { return glm::length(a - b); }, relativeTolerance,
+            [](const glm::dvec3& vector) { return glm::length(vector); });
     }
 };
 
@@ -466,8 +484,9 @@ aiMeshMorphAnim* FbxCompletion::weights(const fbx::Take& take, std::size_t numbe
             distance = std::max(distance, std::abs(a[i] - b[i]));
         return distance;
     };
-    const auto keys =
-        relativeTrack(std::move(times), take.begin, take.end, weightsAt, mixed, apart, maxMagnitude, relativeTolerance);
+    const auto max = [&](const std::vector<double>& values)
+    { return apart(values, std::vector<double>(values.size())); };
+    const auto keys = keysOf(take, std::move(times), weightsAt, mixed, apart, relativeTolerance, max);
     aiMeshMorphAnim* const made = new aiMeshMorphAnim;
     made->mName = _morphed.at(number) + "*0";
     made->mNumKeys = static_cast<unsigned int>(keys.size());

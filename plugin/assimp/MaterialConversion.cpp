@@ -252,7 +252,7 @@ private:
                 if (json moved = transformOf(transform); !moved.is_null())
                 {
                     info["extensions"]["KHR_texture_transform"] = std::move(moved);
-                    _writer.document["extensionsUsed"] = json::array({"KHR_texture_transform"});
+                    _writer.useExtension("KHR_texture_transform");
                 }
             return Texture{std::move(info), path.C_Str()};
         }

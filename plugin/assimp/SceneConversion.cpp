@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "assimp/SceneConversion.h"
 
+#include "assimp/FbxConversion.h"
 #include "assimp/MaterialConversion.h"
 #include "assimp/MeshConversion.h"
-#include "assimp/NodeMarks.h"
 #include "gltf/export/GlbWriter.h"
 
 #include <assimp/scene.h>

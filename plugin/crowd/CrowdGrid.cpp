@@ -2,12 +2,12 @@
 #include "crowd/CrowdGrid.h"
 
 #include "crowd/RandomOutfits.h"
-#include "crowd/RandomShare.h"
 #include "gltf/file/Report.h"
 
 #include <osgGpuAnimation/frame/PoseStatistics.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/detail/StillParts.h>
+#include <osgGpuAnimation/scene/OsgMatrix.h>
 #include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
 #include <osg/Notify>
@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <random>
 
 namespace osgGpuAnimation::crowd
 {
@@ -52,14 +51,12 @@ Result<std::vector<std::size_t>> findClips(const AnimationSet& set, const std::v
 /// The larger horizontal side of a clip's box under the character's placement; nothing if the box is empty.
 std::optional<double> widthOf(const AnimatedCharacter& character, const osg::Matrixd& placement, int clip, bool isYUp)
 {
-    const osg::BoundingBox box = character.getClipBounds(clip);
-    osg::BoundingBoxd placed;
-    for (unsigned int i = 0; i < 8 && box.valid(); ++i)
-        placed.expandBy(osg::Vec3d(box.corner(i)) * placement);
-    if (!placed.valid()) return std::nullopt;
-    const osg::Vec3d size = placed._max - placed._min;
+    osg::Matrixd turned = placement; // a box far from the origin would lose digits
+    turned.setTrans(osg::Vec3d());
+    const osg::BoundingBox box = transformed(character.getClipBounds(clip), turned);
+    const osg::Vec3d size = box._max - box._min;
     const double width = std::max(size.x(), isYUp ? size.z() : size.y());
-    return width > 0.0 ? std::optional(width) : std::nullopt;
+    return width > 0.0 ? std::optional(width) : std::nullopt; // that of an empty box is below 0
 }
 
 /// The width that half of the clips do not exceed: a few clips, such as a fall, do not spread out the crowd. 1 if the

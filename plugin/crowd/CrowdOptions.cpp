@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <sstream>
 
 namespace osgGpuAnimation::crowd
 {
@@ -49,20 +50,6 @@ Result<void> readSize(const std::string& size, CrowdOptions& out)
     return {};
 }
 
-/// The parts between commas.
-std::vector<std::string> splitAtCommas(const std::string& text)
-{
-    std::vector<std::string> parts(1);
-    for (const char letter : text)
-    {
-        if (letter == ',')
-            parts.emplace_back();
-        else
-            parts.back() += letter;
-    }
-    return parts;
-}
-
 /// True for `clips=FILE`, the model's option: the value ends in the extension of a format that has characters. Others
 /// are names of clips, with dots, too: `mixamo.com`.
 bool namesClipsFile(const gltf::OptionWord& word)
@@ -95,9 +82,11 @@ bool apply(const gltf::OptionWord& word, CrowdOptions& out)
     if (word.name == "spacing")
         return readNumber(value, out.spacing.emplace()) && std::isfinite(*out.spacing) && *out.spacing > 0.0;
     if (word.name != "clips" || namesClipsFile(word)) return true;
-    out.clips = splitAtCommas(value);
-    for (const std::string& clip : out.clips)
-        if (clip.empty()) return false;
+    out.clips.clear();
+    std::istringstream clips(value + ',');
+    while (std::getline(clips, out.clips.emplace_back(), ','))
+        if (out.clips.back().empty()) return false;
+    out.clips.pop_back();
     return true;
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "crowd/RandomOutfits.h"
 
-#include "crowd/RandomShare.h"
-
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 
 #include <osgDB/FileNameUtils>
@@ -11,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <random>
 #include <set>
 #include <string>
 

@@ -27,6 +27,12 @@ Number littleEndian(const char* bytes)
     return number;
 }
 
+/// Of an element of an array of that type.
+std::size_t bytesOf(char type)
+{
+    return type == 'd' || type == 'l' ? 8 : type == 'b' || type == 'c' ? 1 : 4;
+}
+
 double parsedNumber(std::string_view text)
 {
     if (!text.empty() && text.front() == '+') text.remove_prefix(1);
@@ -154,8 +160,7 @@ private:
         element.arrayCount = littleEndian<std::uint32_t>(&_bytes[position]);
         element.isDeflated = littleEndian<std::uint32_t>(&_bytes[position + 4]) == 1;
         const std::size_t given = littleEndian<std::uint32_t>(&_bytes[position + 8]);
-        const std::size_t bytesEach = type == 'd' || type == 'l' ? 8 : type == 'b' || type == 'c' ? 1 : 4;
-        const std::size_t stored = element.isDeflated ? given : bytesEach * element.arrayCount;
+        const std::size_t stored = element.isDeflated ? given : bytesOf(type) * element.arrayCount;
         position += 12;
         if (end - position < stored) return false;
         element.array = _bytes.substr(position, stored);
@@ -335,10 +340,7 @@ std::vector<double> Element::numbers() const
 {
     if (const Element* const content = child("a")) return textNumbers(content->array);
     if (arrayType == 0) return {};
-    const std::size_t bytesEach = arrayType == 'd' || arrayType == 'l'   ? 8
-                                  : arrayType == 'b' || arrayType == 'c' ? 1
-                                                                         : 4;
-    const std::string decoded = isDeflated ? inflated(array, bytesEach * arrayCount) : std::string();
+    const std::string decoded = isDeflated ? inflated(array, bytesOf(arrayType) * arrayCount) : std::string();
     const std::string_view bytes = isDeflated ? std::string_view(decoded) : array;
     switch (arrayType)
     {

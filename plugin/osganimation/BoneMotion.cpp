@@ -3,6 +3,7 @@
 
 #include "osganimation/CurveKeys.h"
 
+#include <osgGpuAnimation/authoring/keyframes/SampledTrack.h>
 #include <osgGpuAnimation/math/Rotation.h>
 #include <osgGpuAnimation/scene/OsgMatrix.h>
 
@@ -21,6 +22,31 @@ namespace
 osg::Matrixd matrixOf(const JointTransform& transform)
 {
     return toOsg(transform.toMatrix());
+}
+
+/// The largest of two numbers.
+double difference(const osg::Matrixd& a, const osg::Matrixd& b)
+{
+    double max = 0.0;
+    for (int i = 0; i < 16; ++i)
+        max = std::max(max, std::abs(a.ptr()[i] - b.ptr()[i]));
+    return max;
+}
+
+/// The same as a part of the largest number of b, which is an affine matrix.
+double deviation(const osg::Matrixd& a, const osg::Matrixd& b)
+{
+    return difference(a, b) / difference(b, osg::Matrixd(0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0));
+}
+
+/// Linear, and slerp the short way, as the kit mixes two keys.
+osg::Matrixd between(const osg::Matrixd& from, const osg::Matrixd& to, double share)
+{
+    const JointTransform a = transformOf(from), b = transformOf(to);
+    const glm::dvec4 rotation = Rotation::slerp(glm::dvec4(a.rotation), glm::dvec4(b.rotation), share);
+    const auto part = static_cast<float>(share);
+    return matrixOf(
+        {glm::mix(a.translation, b.translation, part), glm::vec4(rotation), glm::mix(a.scale, b.scale, part)});
 }
 
 } // namespace
@@ -45,7 +71,7 @@ JointTransform transformOf(const osg::Matrixd& matrix)
 
 bool hasNoShear(const osg::Matrixd& matrix)
 {
-    return BoneMotion::difference(matrixOf(transformOf(matrix)), matrix) < 1e-4 * BoneMotion::size(matrix);
+    return deviation(matrixOf(transformOf(matrix)), matrix) < 1e-4;
 }
 
 BoneMotion::BoneMotion(const osgAnimation::Bone& bone, const osgAnimation::UpdateBone* update,
@@ -63,28 +89,6 @@ BoneMotion::BoneMotion(const osgAnimation::Bone& bone, const osgAnimation::Updat
     }
 }
 
-double BoneMotion::difference(const osg::Matrixd& a, const osg::Matrixd& b)
-{
-    double max = 0.0;
-    for (int i = 0; i < 16; ++i)
-        max = std::max(max, std::abs(a.ptr()[i] - b.ptr()[i]));
-    return max;
-}
-
-double BoneMotion::size(const osg::Matrixd& matrix)
-{
-    return difference(matrix, osg::Matrixd(0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0));
-}
-
-osg::Matrixd BoneMotion::between(const osg::Matrixd& from, const osg::Matrixd& to, float share)
-{
-    const JointTransform a = transformOf(from), b = transformOf(to);
-    const glm::dvec4 rotation =
-        Rotation::slerp(glm::dvec4(a.rotation), glm::dvec4(b.rotation), static_cast<double>(share));
-    return matrixOf(
-        {glm::mix(a.translation, b.translation, share), glm::vec4(rotation), glm::mix(a.scale, b.scale, share)});
-}
-
 osg::Matrixd BoneMotion::at(double seconds)
 {
     if (!_update) return _still;
@@ -98,7 +102,9 @@ osg::Matrixd BoneMotion::at(double seconds)
 
 std::vector<Channel> BoneMotion::channels(int target)
 {
-    const std::vector<CurveKey<osg::Matrixd>> keys = linearKeys(*this, keyTimesOf(_channels));
+    const auto function = [this](double time, bool before) { return at(before ? justBefore(time) : time); };
+    const auto inTolerances = [](const osg::Matrixd& a, const osg::Matrixd& b) { return deviation(a, b) / tolerance; };
+    const auto keys = sampledTrack(keyTimesOf(_channels), function, between, inTolerances, minJump);
     std::vector<Channel> made;
     if (keys.empty()) return made;
     for (const Channel::Path path : {Channel::Path::Translation, Channel::Path::Rotation, Channel::Path::Scale})
@@ -106,13 +112,13 @@ std::vector<Channel> BoneMotion::channels(int target)
         Channel channel;
         channel.path = path;
         channel.target = target;
-        for (const CurveKey<osg::Matrixd>& key : keys)
+        for (const auto& [time, matrix] : keys)
         {
-            const JointTransform transform = transformOf(key.value);
+            const JointTransform transform = transformOf(matrix);
             const glm::vec4& part = path == Channel::Path::Translation ? transform.translation
                                     : path == Channel::Path::Rotation  ? transform.rotation
                                                                        : transform.scale;
-            channel.times.push_back(key.seconds);
+            channel.times.push_back(time);
             for (int i = 0; i < (path == Channel::Path::Rotation ? 4 : 3); ++i)
                 channel.values.push_back(static_cast<double>(part[i]));
         }

@@ -32,12 +32,6 @@ public:
     /// 1e-5 of its largest number. Where the matrix jumps, two keys are next to each other. target: the joint's index.
     std::vector<Channel> channels(int target);
 
-    // For linearKeys():
-    static double difference(const osg::Matrixd& a, const osg::Matrixd& b); ///< the largest of two numbers
-    static double size(const osg::Matrixd& matrix);                         ///< its largest number
-    /// Linear, and slerp the short way, as the kit mixes two keys.
-    static osg::Matrixd between(const osg::Matrixd& from, const osg::Matrixd& to, float share);
-
 private:
     osg::Matrixd _still; ///< without stacked transforms
     osg::ref_ptr<osgAnimation::UpdateBone> _update;

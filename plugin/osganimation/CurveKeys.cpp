@@ -2,7 +2,6 @@
 #include "osganimation/CurveKeys.h"
 
 #include <algorithm>
-#include <tuple>
 
 namespace osgGpuAnimation::osganimation
 {
@@ -10,26 +9,15 @@ namespace osgGpuAnimation::osganimation
 namespace
 {
 
-using KeyframeContainers =
-    std::tuple<osgAnimation::FloatKeyframeContainer, osgAnimation::DoubleKeyframeContainer,
-               osgAnimation::Vec2KeyframeContainer, osgAnimation::Vec3KeyframeContainer,
-               osgAnimation::Vec4KeyframeContainer, osgAnimation::QuatKeyframeContainer,
-               osgAnimation::MatrixKeyframeContainer, osgAnimation::FloatCubicBezierKeyframeContainer,
-               osgAnimation::DoubleCubicBezierKeyframeContainer, osgAnimation::Vec2CubicBezierKeyframeContainer,
-               osgAnimation::Vec3CubicBezierKeyframeContainer, osgAnimation::Vec4CubicBezierKeyframeContainer>;
-
-template <class Container>
-void addTimes(const osgAnimation::KeyframeContainer& keys, std::vector<double>& times)
+template <class... Values>
+void addTimesOf(const osgAnimation::KeyframeContainer& keys, std::vector<double>& times)
 {
-    const auto* const typed = dynamic_cast<const Container*>(&keys);
-    for (std::size_t i = 0; typed && i < typed->size(); ++i)
-        times.push_back((*typed)[i].getTime());
-}
-
-template <class... Containers>
-void addTimesOf(const osgAnimation::KeyframeContainer& keys, std::vector<double>& times, std::tuple<Containers...>*)
-{
-    (addTimes<Containers>(keys, times), ...);
+    const auto add = [&](const auto* typed)
+    {
+        for (std::size_t i = 0; typed && i < typed->size(); ++i)
+            times.push_back((*typed)[i].getTime());
+    };
+    (add(dynamic_cast<const osgAnimation::TemplateKeyframeContainer<Values>*>(&keys)), ...);
 }
 
 } // namespace
@@ -42,7 +30,9 @@ std::vector<double> keyTimesOf(const std::vector<osg::ref_ptr<osgAnimation::Chan
         // Without a const KeyframeContainer in osgAnimation.
         osgAnimation::Sampler* const sampler = channel->getSampler();
         if (const osgAnimation::KeyframeContainer* const keys = sampler->getKeyframeContainer())
-            addTimesOf(*keys, times, static_cast<KeyframeContainers*>(nullptr));
+            addTimesOf<float, double, osg::Vec2, osg::Vec3, osg::Vec4, osg::Quat, osg::Matrixf,
+                       osgAnimation::FloatCubicBezier, osgAnimation::DoubleCubicBezier, osgAnimation::Vec2CubicBezier,
+                       osgAnimation::Vec3CubicBezier, osgAnimation::Vec4CubicBezier>(*keys, times);
     }
     // Times of a clip are floats.
     for (double& time : times)

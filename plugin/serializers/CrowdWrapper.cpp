@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "serializers/StoredAnimation.h"
 
-#include "serializers/StoredLevels.h"
-
 #include <osgGpuAnimation/animation/detail/ControllerDetail.h>
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/mesh/lod/CharacterLevels.h>
-#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
 #include <osgGpuAnimation/nodes/Outfit.h>
 #include <osgGpuAnimation/scene/OsgMatrix.h>
@@ -189,10 +186,7 @@ void transferInstances(ValueStream& stream, AnimatedCrowd& crowd)
     }
     transferOutfits(stream, crowd);
     if (isWithLevels) transferCharacterLevels(stream, crowd);
-    if (stream.hasRead())
-    {
-        stream.require("a crowd: ", crowd.getMeshes().setPixelError(static_cast<float>(pixelError)));
-    }
+    if (stream.hasRead()) stream.require("a crowd: ", crowd.getMeshes().setPixelError(static_cast<float>(pixelError)));
     transferList(stream, crowd);
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "serializers/StoredAnimation.h"
-#include "serializers/StoredLevels.h"
 
 #include <osgGpuAnimation/looks/CharacterProgram.h>
 #include <osgGpuAnimation/looks/shading/Mipmaps.h>
@@ -9,7 +8,6 @@
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
-#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
 #include <osg/LOD>
 #include <osg/Notify>

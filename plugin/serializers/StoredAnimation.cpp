@@ -70,7 +70,6 @@ void transferMorphs(ValueStream& stream, std::vector<MorphWeights>& morphs)
                 });
 }
 
-constexpr std::size_t floatsATransform = sizeof(JointTransform) / sizeof(float);
 /// Of all compact clips of a set together; the default of the glTF reader's budget.
 constexpr std::size_t maxCompactBytes = std::size_t(2) << 30;
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "serializers/StoredLevels.h"
-
 #include "serializers/StoredAnimation.h"
 
 #include <osgGpuAnimation/mesh/detail/MeshDetail.h>

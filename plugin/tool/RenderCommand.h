@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "crowd/CrowdOptions.h"
-#include "gltf/Import.h"
 #include "tool/ModelFile.h"
 #include "tool/PictureViewer.h"
 
 #include <osgGpuAnimation/math/Result.h>
 
-#include <functional>
 #include <optional>
 #include <string>
-#include <vector>
 
 namespace osgGpuAnimation::tool
 {
@@ -39,16 +35,6 @@ struct RenderCommand : ModelArguments ///< or a crowd of it: `fox.glb.20x20.crow
 
     /// Error messages begin with the name of the file at fault.
     Result<void> run() const;
-
-private:
-    std::vector<double> times() const; ///< seconds, by picture
-    /// points: of the scene, at all times. Error: there are none.
-    Result<void> show(PictureViewer& viewer, osg::Node& scene, const std::vector<osg::Vec3d>& points,
-                      const std::optional<ViewDirection>& from) const;
-    /// simulationTime: of the viewer, from a picture's time; called before the picture is drawn.
-    Result<void> drawPictures(PictureViewer& viewer, const std::function<double(double)>& simulationTime) const;
-    Result<void> drawModel(PictureViewer& viewer, const gltf::ImportedModel& model) const;
-    Result<void> drawCrowd(PictureViewer& viewer, osg::Node& model, const crowd::CrowdOptions& grid) const;
 };
 
 } // namespace osgGpuAnimation::tool

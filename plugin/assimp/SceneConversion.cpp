@@ -229,9 +229,7 @@ private:
 
     std::optional<Error> addNodes(std::size_t maxDepth);
     void addMeshes(std::size_t number, MeshWriter& meshes);
-    std::size_t addChild(std::size_t parent, const std::string& name);
     json transformOf(const aiNode& node);
-    void hide(json& node);
 
     const aiScene& _scene;
     gltf::Report& _report;
@@ -293,16 +291,11 @@ std::optional<Error> SceneWriter::addNodes(std::size_t maxDepth)
     for (std::size_t number = 0; number < _nodes.size(); ++number)
     {
         nodes[number].update(transformOf(*_nodes[number].node));
-        if (marksOf(*_nodes[number].node).isHidden) hide(nodes[number]);
+        if (!marksOf(*_nodes[number].node).isHidden) continue;
+        nodes[number]["extensions"]["KHR_node_visibility"]["visible"] = false;
+        _writer.useExtension("KHR_node_visibility");
     }
     return std::nullopt;
-}
-
-void SceneWriter::hide(json& node)
-{
-    const char* const extension = "KHR_node_visibility";
-    node["extensions"][extension]["visible"] = false;
-    _writer.useExtension(extension);
 }
 
 json SceneWriter::transformOf(const aiNode& node)
@@ -324,14 +317,6 @@ json SceneWriter::transformOf(const aiNode& node)
             {"scale", {scale.x, scale.y, scale.z}}};
 }
 
-std::size_t SceneWriter::addChild(std::size_t parent, const std::string& name)
-{
-    json& nodes = _writer.document["nodes"];
-    const std::size_t number = gltf::append(nodes, {{"name", name}});
-    nodes[parent]["children"].push_back(number);
-    return number;
-}
-
 void SceneWriter::addMeshes(std::size_t number, MeshWriter& meshes)
 {
     const aiNode& node = *_nodes[number].node;
@@ -349,9 +334,14 @@ void SceneWriter::addMeshes(std::size_t number, MeshWriter& meshes)
         if (group.empty()) continue;
         const std::optional<WrittenMesh> written = meshes.write(group, number);
         if (!written) continue;
-        const bool isTaken = _writer.document["nodes"][number].contains("mesh");
-        const std::size_t drawn = isTaken ? addChild(number, marksOf(node).name) : number;
-        json& made = _writer.document["nodes"][drawn];
+        json& nodes = _writer.document["nodes"];
+        std::size_t drawn = number;
+        if (nodes[number].contains("mesh"))
+        {
+            drawn = gltf::append(nodes, {{"name", marksOf(node).name}});
+            nodes[number]["children"].push_back(drawn);
+        }
+        json& made = nodes[drawn];
         made["mesh"] = written->mesh;
         if (written->skin) made["skin"] = *written->skin;
         if (group.front()->mNumAnimMeshes > 0)

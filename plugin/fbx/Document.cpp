@@ -47,21 +47,7 @@ class BinaryParser
 public:
     BinaryParser(std::string_view bytes, int version) : _bytes(bytes), _isWide(version >= 7500) {}
 
-    Result<void> parse(Element& root)
-    {
-        std::size_t at = headerBytes;
-        // The record of zeros that ends the list may be missing where the file ends.
-        while (at + recordBytes() <= _bytes.size())
-        {
-            Element child;
-            const Result<std::size_t> next = record(at, _bytes.size(), child, 1);
-            if (!next) return next.error();
-            if (next.value() == 0) break;
-            root.children.push_back(std::move(child));
-            at = next.value();
-        }
-        return {};
-    }
+    Result<void> parse(Element& root) { return records(headerBytes, _bytes.size(), root, 1); }
 
 private:
     std::size_t recordBytes() const { return _isWide ? 25 : 13; }
@@ -75,6 +61,22 @@ private:
     static Error broken(std::size_t at, const char* what)
     {
         return {"FBX record at byte " + std::to_string(at) + ": " + what};
+    }
+
+    Result<void> records(std::size_t at, std::size_t limit, Element& parent, int depth)
+    {
+        // The record of zeros that ends the list may be missing where the file ends.
+        const std::size_t least = depth == 1 ? recordBytes() : 1;
+        while (at + least <= limit)
+        {
+            Element child;
+            const Result<std::size_t> next = record(at, limit, child, depth);
+            if (!next) return next.error();
+            if (next.value() == 0) break;
+            parent.children.push_back(std::move(child));
+            at = next.value();
+        }
+        return {};
     }
 
     /// The end of the record; 0: the record that ends a list.
@@ -92,16 +94,8 @@ private:
         const std::size_t endOfValues = position + static_cast<std::size_t>(length);
         for (std::uint64_t i = 0; i < count; ++i)
             if (!addValue(position, endOfValues, element)) return broken(at, "a value ends beyond it");
-        position = endOfValues;
-        while (position < end)
-        {
-            Element child;
-            const Result<std::size_t> next = record(position, static_cast<std::size_t>(end), child, depth + 1);
-            if (!next) return next.error();
-            if (next.value() == 0) break;
-            element.children.push_back(std::move(child));
-            position = next.value();
-        }
+        if (const Result<void> read = records(endOfValues, static_cast<std::size_t>(end), element, depth + 1); !read)
+            return read.error();
         return static_cast<std::size_t>(end);
     }
 

@@ -66,7 +66,7 @@ void transferMorphs(ValueStream& stream, std::vector<MorphWeights>& morphs)
                 {
                     std::size_t weights = morph.defaults.size();
                     stream.property("Morph").values(morph.sourceNode, morph.name, weights);
-                    stream.floats(morph.defaults, weights).endLine();
+                    stream.numbers<float>(morph.defaults, weights).endLine();
                 });
 }
 

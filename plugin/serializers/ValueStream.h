@@ -117,11 +117,6 @@ public:
         if (count % perItem != 0) fail(std::to_string(count) + " numbers, not " + std::to_string(perItem) + " an item");
         return *this;
     }
-    template <typename Item>
-    ValueStream& floats(std::vector<Item>& items, std::size_t count)
-    {
-        return numbers<float>(items, count);
-    }
     /// A property that holds numbers alone; the text formats break the line after each `perLine`.
     template <typename Number = float, typename Item>
     void block(const char* name, std::vector<Item>& items, std::size_t perLine)

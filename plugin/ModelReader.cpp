@@ -10,14 +10,10 @@
 #include <osgDB/FileUtils>
 
 #include <new>
+#include <utility>
 
 namespace osgGpuAnimation
 {
-
-Result<gltf::ImportOptions> importOptionsOf(const osgDB::Options* options)
-{
-    return gltf::parseOptions(options ? options->getOptionString() : "");
-}
 
 ModelReader::ModelReader()
 {
@@ -30,43 +26,44 @@ osgDB::ReaderWriter::ReadResult ModelReader::readNode(const std::string& fileNam
     if (!acceptsExtension(osgDB::getLowerCaseFileExtension(fileName))) return ReadResult::FILE_NOT_HANDLED;
     const std::string path = osgDB::findDataFile(modelFile(fileName), options);
     if (path.empty()) return ReadResult::FILE_NOT_FOUND;
+    return import(path, options,
+                  [&](const gltf::ImportOptions& importOptions, gltf::Messages& messages)
+                  { return readGltf(path, importOptions, messages); });
+}
+
+osgDB::ReaderWriter::ReadResult ModelReader::import(const std::string& fileName, const Options* options,
+                                                    const Read& read) const
+{
     try
     {
-        const Result<gltf::ImportOptions> importOptions = importOptionsOf(options);
-        if (!importOptions) return ReadResult(importOptions.error().message);
+        const std::string given = options ? options->getOptionString() : "";
+        const Result<gltf::ImportOptions> parsed = gltf::parseOptions(given);
+        if (!parsed) return ReadResult(parsed.error().message);
+        gltf::ImportOptions own = parsed.value();
         gltf::Messages messages;
-        const Result<std::string> bytes = readGltf(path, importOptions.value(), messages);
+        const Result<std::string> bytes = read(own, messages);
         if (!bytes) return ReadResult(bytes.error().message);
-        return import(bytes.value(), path, options, importOptions.value(), messages);
+        for (const std::string& hint : gltf::misspeltOptions(given, gltf::optionHelp()))
+            OSG_WARN << className() << ": " << hint << std::endl;
+#ifdef OSGGPUANIMATION_ASSIMP
+        own.otherFormats = assimp::readAsGlbApart;
+#endif
+        const Result<gltf::ImportedModel> model = gltf::importModel(bytes.value(), fileName, own);
+        if (!model) return ReadResult(model.error().message);
+        const std::string subject = fileName.empty() ? "glTF stream" : fileName;
+        for (const gltf::Messages* each : {&std::as_const(messages), &model.value().messages})
+        {
+            for (const std::string& warning : each->warnings)
+                OSG_WARN << subject << ": " << warning << std::endl;
+            for (const std::string& note : each->notes)
+                OSG_INFO << subject << ": " << note << std::endl;
+        }
+        return ReadResult(model.value().root.get());
     }
     catch (const std::bad_alloc&)
     {
         return ReadResult::INSUFFICIENT_MEMORY_TO_LOAD;
     }
-}
-
-osgDB::ReaderWriter::ReadResult ModelReader::import(const std::string& bytes, const std::string& fileName,
-                                                    const Options* options, const gltf::ImportOptions& importOptions,
-                                                    const gltf::Messages& messages) const
-{
-    const std::string given = options ? options->getOptionString() : "";
-    for (const std::string& hint : gltf::misspeltOptions(given, gltf::optionHelp()))
-        OSG_WARN << className() << ": " << hint << std::endl;
-    gltf::ImportOptions own = importOptions;
-#ifdef OSGGPUANIMATION_ASSIMP
-    own.otherFormats = assimp::readAsGlbApart;
-#endif
-    const Result<gltf::ImportedModel> model = gltf::importModel(bytes, fileName, own);
-    if (!model) return ReadResult(model.error().message);
-    const std::string subject = fileName.empty() ? "glTF stream" : fileName;
-    for (const gltf::Messages* each : {&messages, &model.value().messages})
-    {
-        for (const std::string& warning : each->warnings)
-            OSG_WARN << subject << ": " << warning << std::endl;
-        for (const std::string& note : each->notes)
-            OSG_INFO << subject << ": " << note << std::endl;
-    }
-    return ReadResult(model.value().root.get());
 }
 
 } // namespace osgGpuAnimation

@@ -5,6 +5,7 @@
 
 #include <osgDB/ReaderWriter>
 
+#include <functional>
 #include <string>
 
 namespace osgGpuAnimation
@@ -31,11 +32,9 @@ protected:
     /// The file that a name asks for.
     virtual std::string modelFile(const std::string& fileName) const { return fileName; }
 
-    ReadResult import(const std::string& bytes, const std::string& fileName, const Options* options,
-                      const gltf::ImportOptions& importOptions, const gltf::Messages& messages) const;
+    using Read = std::function<Result<std::string>(const gltf::ImportOptions&, gltf::Messages&)>;
+    /// Imports what `read` gives. fileName: of messages and external files; empty: a stream without a folder.
+    ReadResult import(const std::string& fileName, const Options* options, const Read& read) const;
 };
-
-/// The import's choices in osgDB's option string; see gltf::parseOptions().
-Result<gltf::ImportOptions> importOptionsOf(const osgDB::Options* options);
 
 } // namespace osgGpuAnimation

@@ -36,8 +36,7 @@ void transferDistance(ValueStream& stream, double& distance)
 
 void transferFeet(ValueStream& stream, GroundFeet& feet)
 {
-    std::vector<GroundLeg> legs;
-    if (!stream.isReading()) legs = feet.getLegs();
+    std::vector<GroundLeg> legs = feet.getLegs();
     std::string ground = feet.getGroundName();
     auto mask = static_cast<std::size_t>(feet.getTraversalMask());
     double reach = feet.getReach(), tilt = feet.getMaxTilt(), lock = feet.getLockDistance(), weight = feet.getWeight();
@@ -95,13 +94,8 @@ void transferCollider(ValueStream& stream, SpringCollider& collider)
 
 void transferChains(ValueStream& stream, SpringBones& springs)
 {
-    std::vector<SpringChain> chains;
-    std::vector<SpringCollider> colliders;
-    if (!stream.isReading())
-    {
-        chains = springs.getChains();
-        colliders = springs.getColliders();
-    }
+    std::vector<SpringChain> chains = springs.getChains();
+    std::vector<SpringCollider> colliders = springs.getColliders();
     auto layer = springs.getLayer();
     double maxDistance = springs.getMaxDistance();
     stream.begin();

@@ -23,8 +23,7 @@ template <typename Value, typename TransferValue, typename Set>
 void transferMap(ValueStream& stream, const char* name, const std::map<std::string, Value>& map,
                  TransferValue transferValue, Set set)
 {
-    std::vector<std::pair<std::string, Value>> pairs;
-    if (!stream.isReading()) pairs.assign(map.begin(), map.end());
+    std::vector<std::pair<std::string, Value>> pairs(map.begin(), map.end());
     const auto transferPair = [&](std::pair<std::string, Value>& pair)
     {
         stream.property("Of").value(pair.first);
@@ -64,7 +63,6 @@ void transferOutfit(ValueStream& stream, Outfit& outfit)
         stream, "JointScales", outfit.getJointScales(), [&](osg::Vec3& scale) { stream.floats(scale.ptr(), 3); },
         [&](const std::string& joint, const osg::Vec3& scale) { outfit.setJointScale(joint, scale); });
     std::vector<Outfit::Prop> props = outfit.getProps();
-    if (stream.isReading()) props.clear();
     stream.list("Props", props, [&](Outfit::Prop& prop) { transferProp(stream, prop); });
     for (const Outfit::Prop& prop : props)
         if (stream.hasRead()) outfit.addProp(prop.joint, prop.node, prop.toJoint);

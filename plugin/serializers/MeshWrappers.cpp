@@ -43,8 +43,7 @@ void transferArray(ValueStream& stream, const char* name, osg::ref_ptr<Array>& a
 void transferMorphTargets(ValueStream& stream, SkinnedGeometry& mesh)
 {
     std::int32_t morph = mesh.getMorph(), entry = mesh.getMorphEntry();
-    std::vector<MorphTarget> targets;
-    if (!stream.isReading()) targets = mesh.getMorphTargets();
+    std::vector<MorphTarget> targets = mesh.getMorphTargets();
     stream.values(morph, entry).endLine();
     const auto transferTarget = [&](MorphTarget& target)
     {

@@ -87,8 +87,7 @@ void transferConstraints(ValueStream& stream, std::vector<Constraint>& constrain
 
 void transferTargets(ValueStream& stream, AnimationController& controller)
 {
-    std::vector<StoredTarget> targets;
-    if (!stream.isReading()) targets = targetsOf(controller);
+    std::vector<StoredTarget> targets = targetsOf(controller);
     stream.list("Targets", targets,
                 [&](StoredTarget& stored)
                 {

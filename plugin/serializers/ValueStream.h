@@ -84,11 +84,12 @@ public:
     void begin(); ///< the same if the property's name is already transferred
     void close();
 
-    /// A property that holds all items. transferItem: void(Item&).
+    /// A property that holds all items; reading replaces them. transferItem: void(Item&).
     template <typename Item, typename Transfer>
     void list(const char* name, std::vector<Item>& items, Transfer transferItem)
     {
         const std::size_t count = open(name, items.size());
+        if (isReading()) items.clear();
         this->items(items, count, transferItem);
         close();
     }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "osganimation/BoneMotion.h"
 
-#include "osganimation/CurveKeys.h"
-
 #include <osgGpuAnimation/authoring/keyframes/SampledTrack.h>
 #include <osgGpuAnimation/math/Rotation.h>
 #include <osgGpuAnimation/scene/OsgMatrix.h>
@@ -47,6 +45,17 @@ osg::Matrixd between(const osg::Matrixd& from, const osg::Matrixd& to, double sh
     const auto part = static_cast<float>(share);
     return matrixOf(
         {glm::mix(a.translation, b.translation, part), glm::vec4(rotation), glm::mix(a.scale, b.scale, part)});
+}
+
+template <class... Values>
+void addTimesOf(const osgAnimation::KeyframeContainer& keys, std::vector<double>& times)
+{
+    const auto add = [&](const auto* typed)
+    {
+        for (std::size_t i = 0; typed && i < typed->size(); ++i)
+            times.push_back((*typed)[i].getTime());
+    };
+    (add(dynamic_cast<const osgAnimation::TemplateKeyframeContainer<Values>*>(&keys)), ...);
 }
 
 } // namespace
@@ -125,6 +134,29 @@ std::vector<Channel> BoneMotion::channels(int target)
         made.push_back(std::move(channel));
     }
     return made;
+}
+
+std::vector<double> keyTimesOf(const std::vector<osg::ref_ptr<osgAnimation::Channel>>& channels)
+{
+    std::vector<double> times;
+    for (const osg::ref_ptr<osgAnimation::Channel>& channel : channels)
+    {
+        // Without a const KeyframeContainer in osgAnimation.
+        osgAnimation::Sampler* const sampler = channel->getSampler();
+        if (const osgAnimation::KeyframeContainer* const keys = sampler->getKeyframeContainer())
+            addTimesOf<float, double, osg::Vec2, osg::Vec3, osg::Vec4, osg::Quat, osg::Matrixf,
+                       osgAnimation::FloatCubicBezier, osgAnimation::DoubleCubicBezier, osgAnimation::Vec2CubicBezier,
+                       osgAnimation::Vec3CubicBezier, osgAnimation::Vec4CubicBezier>(*keys, times);
+    }
+    // Times of a clip are floats.
+    for (double& time : times)
+        time = static_cast<double>(static_cast<float>(time));
+    times.erase(
+        std::remove_if(times.begin(), times.end(), [](double time) { return !(time >= 0.0) || !std::isfinite(time); }),
+        times.end());
+    std::sort(times.begin(), times.end());
+    times.erase(std::unique(times.begin(), times.end()), times.end());
+    return times;
 }
 
 } // namespace osgGpuAnimation::osganimation

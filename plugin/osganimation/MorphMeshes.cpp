@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "osganimation/MorphMeshes.h"
 
-#include "osganimation/CurveKeys.h"
+#include "osganimation/BoneMotion.h"
 
 #include <osgGpuAnimation/authoring/keyframes/SampledTrack.h>
 

@@ -236,9 +236,8 @@ Result<void> RenderCommand::run() const
     const Result<osg::ref_ptr<Environment>> surroundings =
         environment.empty() ? osg::ref_ptr<Environment>(new Environment) : readSurroundings(environment);
     if (!surroundings) return surroundings.error();
-    Result<std::unique_ptr<PictureViewer>> viewer = PictureViewer::create(width, height, look);
+    Result<std::unique_ptr<PictureViewer>> viewer = PictureViewer::create(width, height, look, surroundings.value());
     if (!viewer) return Error{file + ": " + viewer.error().message};
-    viewer.value()->setSurroundings(surroundings.value());
     return isCrowd ? drawCrowd(*this, *viewer.value(), *model.value().root, grid)
                    : drawModel(*this, *viewer.value(), model.value());
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tool/PoseCommand.h"
+#include "tool/Commands.h"
 
 #include "gltf/file/Elements.h"
 #include "gltf/file/ProgressLine.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tool/RenderCommand.h"
+#include "tool/Commands.h"
 
 #include "crowd/CrowdGrid.h"
 #include "gltf/export/PictureWriter.h"

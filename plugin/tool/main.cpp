@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tool/ConvertCommand.h"
-#include "tool/InspectCommand.h"
-#include "tool/PoseCommand.h"
-#include "tool/RenderCommand.h"
+#include "tool/Commands.h"
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>

@@ -15,12 +15,12 @@ void addKeysBetween(const std::pair<double, Value>& from, const std::pair<double
                     const Function& function, const Between& between, const Deviation& deviation,
                     std::vector<std::pair<double, Value>>& keys)
 {
-    bool isFollowed = true;
+    bool deviates = false;                       // what is no number does not
     for (const double share : {0.25, 0.5, 0.75}) // the middle alone would miss curves of the shape of an S
-        isFollowed = isFollowed && deviation(between(from.second, to.second, share),
-                                             function(from.first + share * (to.first - from.first), false)) <= 1.0;
+        deviates = deviates || deviation(between(from.second, to.second, share),
+                                         function(from.first + share * (to.first - from.first), false)) > 1.0;
     const auto middle = static_cast<double>(static_cast<float>(0.5 * (from.first + to.first)));
-    if (isFollowed || halvings == 0 || !(from.first < middle && middle < to.first)) return;
+    if (!deviates || halvings == 0 || !(from.first < middle && middle < to.first)) return;
     const std::pair<double, Value> key{middle, function(middle, false)};
     addKeysBetween(from, key, halvings - 1, function, between, deviation, keys);
     keys.push_back(key);

@@ -5,6 +5,7 @@
 
 #include <osgDB/ReaderWriter>
 
+#include <functional>
 #include <string>
 
 namespace osgGpuAnimation
@@ -31,18 +32,9 @@ protected:
     /// The file that a name asks for.
     virtual std::string modelFile(const std::string& fileName) const { return fileName; }
 
-    /// Reads the clips of other formats for readGltf()'s models; here through the plugin osgdb_assimp, if there is one.
-    virtual gltf::OtherFormats otherFormats() const;
-
-    ReadResult import(const std::string& bytes, const std::string& fileName, const Options* options,
-                      const gltf::ImportOptions& importOptions, const gltf::Messages& messages) const;
+    using Read = std::function<Result<std::string>(const gltf::ImportOptions&, gltf::Messages&)>;
+    /// Imports what `read` gives. fileName: of messages and external files; empty: a stream without a folder.
+    ReadResult import(const std::string& fileName, const Options* options, const Read& read) const;
 };
-
-/// The key of Options::setPluginStringData() for osgdb_assimp: readObject() then returns an osg::StringValueObject, the
-/// file as GLB, with the warnings as descriptions. osgdb_gltf, which is not linked with Assimp, asks so.
-constexpr const char* glbRequest = "osgGpuAnimation.glb";
-
-/// The import's choices in osgDB's option string; see gltf::parseOptions().
-Result<gltf::ImportOptions> importOptionsOf(const osgDB::Options* options);
 
 } // namespace osgGpuAnimation

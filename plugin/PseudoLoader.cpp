@@ -9,11 +9,6 @@
 namespace osgGpuAnimation
 {
 
-PseudoLoader::ReadResult PseudoLoader::readObject(const std::string& fileName, const Options* options) const
-{
-    return readNode(fileName, options);
-}
-
 PseudoLoader::ReadResult PseudoLoader::readNode(const std::string& fileName, const Options* options) const
 {
     if (!acceptsExtension(osgDB::getLowerCaseFileExtension(fileName))) return ReadResult::FILE_NOT_HANDLED;

@@ -13,7 +13,10 @@ namespace osgGpuAnimation
 class PseudoLoader : public osgDB::ReaderWriter
 {
 public:
-    ReadResult readObject(const std::string& fileName, const Options* options) const override;
+    ReadResult readObject(const std::string& fileName, const Options* options) const override
+    {
+        return readNode(fileName, options);
+    }
     /// Status INSUFFICIENT_MEMORY_TO_LOAD if std::bad_alloc is thrown.
     ReadResult readNode(const std::string& fileName, const Options* options) const override;
 

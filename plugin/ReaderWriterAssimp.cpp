@@ -3,8 +3,6 @@
 #include "ModelReader.h"
 #include "serializers/RegistryHooks.h"
 
-#include <osg/UserDataContainer>
-#include <osg/ValueObject>
 #include <osgDB/FileNameUtils>
 #include <osgDB/Registry>
 
@@ -29,23 +27,7 @@ public:
 
     const char* className() const override { return "osgGpuAnimation reader through Assimp"; }
 
-    ReadResult readObject(const std::string& fileName, const Options* options) const override
-    {
-        if (!options || options->getPluginStringData(glbRequest).empty()) return readNode(fileName, options);
-        const Result<gltf::ImportOptions> importOptions = importOptionsOf(options);
-        if (!importOptions) return ReadResult(importOptions.error().message);
-        gltf::Messages messages;
-        const Result<std::string> glb = readGltf(modelFile(fileName), importOptions.value(), messages);
-        if (!glb) return ReadResult(glb.error().message);
-        const osg::ref_ptr<osg::StringValueObject> object = new osg::StringValueObject(glb.value());
-        for (const std::string& warning : messages.warnings)
-            object->getOrCreateUserDataContainer()->addDescription(warning);
-        return ReadResult(object.get());
-    }
-
 protected:
-    gltf::OtherFormats otherFormats() const override { return assimp::readAsGlbApart; }
-
     std::string modelFile(const std::string& fileName) const override
     {
         return osgDB::getLowerCaseFileExtension(fileName) == "assimp" ? osgDB::getNameLessExtension(fileName)

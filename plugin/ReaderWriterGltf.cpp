@@ -36,7 +36,14 @@ public:
     {
         return readNode(stream, options);
     }
-    ReadResult readNode(std::istream& stream, const Options* options) const override;
+    ReadResult readNode(std::istream& stream, const Options* options) const override
+    {
+        // A stream has no folder; the first database path of the options is the folder of its external files.
+        const bool hasFolder = options && !options->getDatabasePathList().empty();
+        return import(hasFolder ? osgDB::concatPaths(options->getDatabasePathList().front(), "") : "", options,
+                      [&](const gltf::ImportOptions& importOptions, gltf::Messages&)
+                      { return gltf::readModelStream(stream, importOptions); });
+    }
 
     WriteResult writeObject(const osg::Object& object, const std::string& fileName,
                             const Options* options) const override
@@ -68,51 +75,28 @@ protected:
 private:
     /// save: called with the bytes of the file.
     template <typename Save>
-    WriteResult write(const osg::Node& node, const std::string& fileName, Save save) const;
+    WriteResult write(const osg::Node& node, const std::string& fileName, Save save) const
+    {
+        const std::string extension = osgDB::getLowerCaseFileExtension(fileName);
+        if (!acceptsExtension(extension)) return WriteResult::FILE_NOT_HANDLED;
+        if (extension == "gltf") return WriteResult("glTF is written as .glb only");
+        try
+        {
+            gltf::Messages messages;
+            gltf::Report report(messages);
+            const Result<std::string> bytes = gltf::exportModel(node, report);
+            for (const std::string& warning : messages.warnings)
+                OSG_WARN << fileName << ": " << warning << std::endl;
+            if (!bytes) return WriteResult(bytes.error().message);
+            const Result<void> saved = save(bytes.value());
+            return saved ? WriteResult(WriteResult::FILE_SAVED) : WriteResult(saved.error().message);
+        }
+        catch (const std::bad_alloc&)
+        {
+            return WriteResult("not enough memory");
+        }
+    }
 };
-
-osgDB::ReaderWriter::ReadResult ReaderWriterGltf::readNode(std::istream& stream, const Options* options) const
-{
-    try
-    {
-        const Result<gltf::ImportOptions> importOptions = importOptionsOf(options);
-        if (!importOptions) return ReadResult(importOptions.error().message);
-        const Result<std::string> bytes = gltf::readModelStream(stream, importOptions.value());
-        if (!bytes) return ReadResult(bytes.error().message);
-        // A stream has no folder; the first database path of the options is the folder of its external files.
-        const bool hasFolder = options && !options->getDatabasePathList().empty();
-        return import(bytes.value(), hasFolder ? osgDB::concatPaths(options->getDatabasePathList().front(), "") : "",
-                      options, importOptions.value(), {});
-    }
-    catch (const std::bad_alloc&)
-    {
-        return ReadResult::INSUFFICIENT_MEMORY_TO_LOAD;
-    }
-}
-
-template <typename Save>
-osgDB::ReaderWriter::WriteResult ReaderWriterGltf::write(const osg::Node& node, const std::string& fileName,
-                                                         Save save) const
-{
-    const std::string extension = osgDB::getLowerCaseFileExtension(fileName);
-    if (!acceptsExtension(extension)) return WriteResult::FILE_NOT_HANDLED;
-    if (extension == "gltf") return WriteResult("glTF is written as .glb only");
-    try
-    {
-        gltf::Messages messages;
-        gltf::Report report(messages);
-        const Result<std::string> bytes = gltf::exportModel(node, report);
-        for (const std::string& warning : messages.warnings)
-            OSG_WARN << fileName << ": " << warning << std::endl;
-        if (!bytes) return WriteResult(bytes.error().message);
-        const Result<void> saved = save(bytes.value());
-        return saved ? WriteResult(WriteResult::FILE_SAVED) : WriteResult(saved.error().message);
-    }
-    catch (const std::bad_alloc&)
-    {
-        return WriteResult("not enough memory");
-    }
-}
 
 static RegistryHooks registryHooks;
 

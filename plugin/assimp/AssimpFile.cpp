@@ -12,12 +12,10 @@
 #include <assimp/Importer.hpp>
 #include <assimp/IOSystem.hpp>
 #include <assimp/postprocess.h>
-#include <assimp/ProgressHandler.hpp>
 #include <assimp/scene.h>
 
 #include <osgDB/FileNameUtils>
 
-#include <chrono>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -62,25 +60,10 @@ private:
     bool _allowOutsideFiles;
 };
 
-class TimeLimit : public Assimp::ProgressHandler
-{
-public:
-    bool Update(float) override { return std::chrono::steady_clock::now() < _end; }
-
-private:
-    std::chrono::steady_clock::time_point _end =
-        std::chrono::steady_clock::now() +
-        std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(maxSeconds));
-};
-
-std::string firstLine(const std::string& text)
-{
-    return text.substr(0, text.find('\n'));
-}
-
 Error unreadable(const Assimp::Importer& importer)
 {
-    return {"Assimp cannot read it: " + gltf::printable(firstLine(importer.GetErrorString()), 300)};
+    const std::string text = importer.GetErrorString();
+    return {"Assimp cannot read it: " + gltf::printable(text.substr(0, text.find('\n')), 300)};
 }
 
 constexpr unsigned int steps = aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_LimitBoneWeights |
@@ -115,8 +98,7 @@ Result<const aiScene*> readScene(Assimp::Importer& importer, const std::string& 
     std::error_code failure;
     if (std::filesystem::file_size(fileName, failure) > maxFileBytes && !failure)
         return Error{"the file has more than " + std::to_string(maxFileBytes) + " bytes"};
-    importer.SetIOHandler(new FolderFiles(fileName, options.allowOutsideFiles)); // the importer deletes both
-    importer.SetProgressHandler(new TimeLimit);
+    importer.SetIOHandler(new FolderFiles(fileName, options.allowOutsideFiles)); // which the importer deletes
     if (osgDB::getLowerCaseFileExtension(fileName) == "fbx") return readFbx(importer, fileName, report);
     const aiScene* const scene = importer.ReadFile(fileName, steps);
     if (!scene) return unreadable(importer);

@@ -22,9 +22,9 @@ namespace osgGpuAnimation::assimp
 /// keep their numbers.
 ///
 /// Assimp checks files less than the reader of glTF does: a faulty file may end the process. Plugins and tools call
-/// readAsGlbApart() (ConversionProcess.h), which starts another process for it. What is bounded: the
-/// file's size (maxFileBytes), other files that it names (in or below its folder, unless options.allowOutsideFiles),
-/// the time (maxSeconds, between the steps at which Assimp asks), and the result (options.maxDecodedBytes).
+/// readAsGlbApart() (ConversionProcess.h), which starts another process for it and limits its time. What is bounded
+/// here: the file's size (maxFileBytes), other files that it names (in or below its folder, unless
+/// options.allowOutsideFiles), and the result (options.maxDecodedBytes).
 /// Errors: those bounds; Assimp cannot read the file; see glbOf().
 Result<std::string> readAsGlb(const std::string& fileName, const gltf::ImportOptions& options, gltf::Report& report);
 
@@ -36,6 +36,5 @@ Result<const aiScene*> readScene(Assimp::Importer& importer, const std::string& 
 bool isFormat(const std::string& extension);
 
 constexpr std::size_t maxFileBytes = std::size_t(512) << 20;
-constexpr double maxSeconds = 60.0;
 
 } // namespace osgGpuAnimation::assimp

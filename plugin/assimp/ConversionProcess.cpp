@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "assimp/ConversionProcess.h"
 
-#include "assimp/ConversionFrames.h"
+#include "assimp/ConversionOutput.h"
 
 #include <osgGpuAnimation/math/detail/System.h>
+
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cerrno>
@@ -190,36 +192,26 @@ Error endedBy(int signal, const std::string& printed)
             "; the file is damaged, or has what this version of Assimp cannot read: write it again, or as glTF"};
 }
 
-/// The GLB or the error of the frames; none: they are not complete.
+/// The GLB or the error that the helper has written; none: it is not complete.
 std::optional<Result<std::string>> unpacked(std::string& output, gltf::Report& report)
 {
-    std::size_t at = 0;
-    while (output.size() - at >= frameHeaderBytes)
+    constexpr std::size_t maxHeadBytes = 1 << 20; // a report has few messages
+    const std::size_t end = output.find('\n');
+    if (end > maxHeadBytes) return std::nullopt; // or there is no line
+    try
     {
-        const auto kind = static_cast<FrameKind>(output[at]);
-        std::uint64_t bytes = 0;
-        std::memcpy(&bytes, &output[at + 1], sizeof(bytes));
-        at += frameHeaderBytes;
-        if (bytes > output.size() - at) return std::nullopt;
-        const auto content = [&] { return output.substr(at, static_cast<std::size_t>(bytes)); };
-        switch (kind)
-        {
-        case FrameKind::Warning:
-            report.warn(content());
-            break;
-        case FrameKind::Note:
-            report.note(content());
-            break;
-        case FrameKind::Error:
-            return Result<std::string>(Error{content()});
-        case FrameKind::Glb:
-            output.erase(at + static_cast<std::size_t>(bytes));
-            output.erase(0, at);
-            return Result<std::string>(std::move(output));
-        default:
-            return std::nullopt;
-        }
-        at += static_cast<std::size_t>(bytes);
+        const nlohmann::json head = nlohmann::json::parse(output.data(), output.data() + end);
+        for (const std::string& warning : head.at("warnings").get<std::vector<std::string>>())
+            report.warn(warning);
+        for (const std::string& note : head.at("notes").get<std::vector<std::string>>())
+            report.note(note);
+        if (head.contains("error")) return Result<std::string>(Error{head["error"].get<std::string>()});
+        output.erase(0, end + 1);
+        if (output.size() == head.at("bytes").get<std::size_t>()) return Result<std::string>(std::move(output));
+    }
+    catch (const nlohmann::json::exception&)
+    {
+        // A program that a faulty file took over may write anything.
     }
     return std::nullopt;
 }

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "assimp/FbxConversion.h"
 
-#include "assimp/NodeMarks.h"
-#include "assimp/SampledTrack.h"
-
-#include <assimp/scene.h>
+#include <osgGpuAnimation/authoring/keyframes/SampledTrack.h>
 
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -59,14 +57,6 @@ glm::dvec3 inverseScale(const glm::dvec3& scale)
     return inverse;
 }
 
-double maxMagnitude(const std::vector<double>& numbers)
-{
-    double max = 0.0;
-    for (const double each : numbers)
-        max = std::max(max, std::abs(each));
-    return max;
-}
-
 void replaceChild(aiNode& parent, const aiNode& child, aiNode& with)
 {
     std::replace(parent.mChildren, parent.mChildren + parent.mNumChildren, const_cast<aiNode*>(&child), &with);
@@ -101,86 +91,78 @@ const fbx::ModelTracks* tracksOf(const fbx::Take& take, int model)
     return found != take.models.end() && found->model == number ? &*found : nullptr;
 }
 
-using VectorKeys = std::vector<std::pair<double, glm::dvec3>>;
+/// Keys of the take from time 0 on. times: where the function bends or jumps, in any order; only those within the take
+/// count. distance(a, b) is compared with the tolerance, which is relative to the largest magnitude at these times.
+template <class Function, class Between, class Distance, class Magnitude>
+auto keysOf(const fbx::Take& take, std::vector<double> times, const Function& function, const Between& between,
+            const Distance& distance, double tolerance, const Magnitude& magnitude)
+{
+    times.insert(times.end(), {take.begin, take.end});
+    std::sort(times.begin(), times.end()); // curves of one track share many
+    times.erase(std::unique(times.begin(), times.end()), times.end());
+    times.erase(std::upper_bound(times.begin(), times.end(), take.end), times.end());
+    times.erase(times.begin(), std::lower_bound(times.begin(), times.end(), take.begin));
+    double size = 0.0;
+    for (const double time : times)
+        size = std::max(size, static_cast<double>(magnitude(function(time, false))));
+    const auto inTake = [&](double time, bool before)
+    { return function(time, before || (time >= take.end && time > take.begin)); };
+    const auto deviation = [&](const auto& a, const auto& b)
+    {
+        const double apart = distance(a, b);
+        return apart > 0.0 ? apart / (tolerance * size) : 0.0;
+    };
+    auto keys = sampledTrack(times, inTake, between, deviation, 1.0);
+    for (auto& key : keys)
+        key.first -= take.begin;
+    return keys;
+}
 
-/// How a node moves in a take: a model, or the node of the parent's inverse scale above it, which has its translation.
+/// How a node moves in a take: its placement, and the times where the parts of it bend or jump.
 struct Motion
 {
-    const fbx::Model& model;
-    const fbx::ModelTracks* tracks; ///< null: it rests
-    double metres;
-    bool hasTranslation = true;
-    const fbx::Model* parent = nullptr; ///< whose inverse scale is all that the node has besides; null: a model's node
-    const fbx::ModelTracks* parentTracks = nullptr;
-
-    fbx::Placement placement(double time, bool before) const
-    {
-        return tracks ? model.placement(tracks->translation.at(time, before), tracks->rotation.at(time, before),
-                                        tracks->scale.at(time, before))
-                      : model.rest();
-    }
-
-    VectorKeys translations(const fbx::Take& take) const
-    {
-        std::vector<double> times;
-        if (tracks && hasTranslation) tracks->translation.appendTimes(times);
-        if (tracks && hasTranslation && model.hasPivots())
-        {
-            tracks->rotation.appendTimes(times);
-            tracks->scale.appendTimes(times);
-        }
-        return vectors(std::move(times), take,
-                       [this](double time, bool before)
-                       { return hasTranslation ? metres * placement(time, before).translation : glm::dvec3(0.0); });
-    }
-
-    VectorKeys scales(const fbx::Take& take) const
-    {
-        std::vector<double> times;
-        if (tracks && !parent) tracks->scale.appendTimes(times);
-        if (parentTracks) parentTracks->scale.appendTimes(times);
-        return vectors(std::move(times), take,
-                       [this](double time, bool before)
-                       {
-                           if (!parent) return placement(time, before).scale;
-                           return inverseScale(parentTracks ? parentTracks->scale.at(time, before) : parent->scale);
-                       });
-    }
-
-    std::vector<std::pair<double, glm::dquat>> rotations(const fbx::Take& take) const
-    {
-        std::vector<double> times;
-        if (tracks && !parent) tracks->rotation.appendTimes(times);
-        const auto rotation = [this](double time, bool before)
-        { return parent ? glm::dquat(1.0, 0.0, 0.0, 0.0) : placement(time, before).rotation; };
-        const auto slerped = [](const glm::dquat& a, const glm::dquat& b, double share)
-        { return glm::slerp(a, b, share); };
-        const auto angle = [](const glm::dquat& a, const glm::dquat& b)
-        {
-            const glm::dquat difference = glm::conjugate(a) * b; // the acos of the product is inexact near 1
-            return 2.0 * std::asin(std::min(1.0, glm::length(glm::dvec3(difference.x, difference.y, difference.z))));
-        };
-        return sampledTrack(std::move(times), take.begin, take.end, rotation, slerped, angle, rotationTolerance);
-    }
-
-    template <class Function>
-    static VectorKeys vectors(std::vector<double> times, const fbx::Take& take, const Function& function)
-    {
-        return relativeTrack(
-            std::move(times), take.begin, take.end, function,
-            [](const glm::dvec3& a, const glm::dvec3& b, double share) { return glm::mix(a, b, share); },
-            [](const glm::dvec3& a, const glm::dvec3& b) { return glm::length(a - b); },
-            [](const glm::dvec3& vector) { return glm::length(vector); }, relativeTolerance);
-    }
+    std::function<fbx::Placement(double time, bool before)> at;
+    std::vector<double> translationTimes{}, rotationTimes{}, scaleTimes{};
 };
 
-aiVectorKey* vectorKeys(const VectorKeys& keys, unsigned int& count)
+aiNodeAnim* transforms(const std::string& node, const fbx::Take& take, const Motion& motion)
 {
-    count = static_cast<unsigned int>(keys.size());
-    aiVectorKey* const array = new aiVectorKey[keys.size()];
-    for (std::size_t i = 0; i < keys.size(); ++i)
-        array[i] = aiVectorKey(keys[i].first, toAssimp(keys[i].second));
-    return array;
+    const auto vectorKeys = [&](const std::vector<double>& times, glm::dvec3 fbx::Placement::*part, unsigned int& count)
+    {
+        const auto keys = keysOf(
+            take, times, [&](double time, bool before) { return motion.at(time, before).*part; },
+            [](const glm::dvec3& a, const glm::dvec3& b, double share) { return glm::mix(a, b, share); },
+            [](const glm::dvec3& a, const glm::dvec3& b) { return glm::length(a - b); }, relativeTolerance,
+            [](const glm::dvec3& vector) { return glm::length(vector); });
+        count = static_cast<unsigned int>(keys.size());
+        aiVectorKey* const array = new aiVectorKey[keys.size()];
+        for (std::size_t i = 0; i < keys.size(); ++i)
+            array[i] = aiVectorKey(keys[i].first, toAssimp(keys[i].second));
+        return array;
+    };
+    const auto angle = [](const glm::dquat& a, const glm::dquat& b)
+    {
+        const glm::dquat difference = glm::conjugate(a) * b; // the acos of the product is inexact near 1
+        return 2.0 * std::asin(std::min(1.0, glm::length(glm::dvec3(difference.x, difference.y, difference.z))));
+    };
+    const auto rotations = keysOf(
+        take, motion.rotationTimes, [&](double time, bool before) { return motion.at(time, before).rotation; },
+        [](const glm::dquat& a, const glm::dquat& b, double share) { return glm::slerp(a, b, share); }, angle,
+        rotationTolerance, [](const glm::dquat&) { return 1.0; });
+    aiNodeAnim* const made = new aiNodeAnim;
+    made->mNodeName = node;
+    made->mPositionKeys = vectorKeys(motion.translationTimes, &fbx::Placement::translation, made->mNumPositionKeys);
+    made->mScalingKeys = vectorKeys(motion.scaleTimes, &fbx::Placement::scale, made->mNumScalingKeys);
+    made->mNumRotationKeys = static_cast<unsigned int>(rotations.size());
+    made->mRotationKeys = new aiQuatKey[rotations.size()];
+    for (std::size_t i = 0; i < rotations.size(); ++i)
+    {
+        const glm::dquat& each = rotations[i].second;
+        made->mRotationKeys[i] =
+            aiQuatKey(rotations[i].first, aiQuaternion(static_cast<float>(each.w), static_cast<float>(each.x),
+                                                       static_cast<float>(each.y), static_cast<float>(each.z)));
+    }
+    return made;
 }
 
 class FbxCompletion
@@ -218,8 +200,6 @@ private:
 
     void writeTakes();
     void addModel(const fbx::Take& take, std::size_t model, std::vector<aiNodeAnim*>& channels) const;
-    aiNodeAnim* transforms(const std::string& node, const fbx::Take& take, std::size_t model,
-                           bool isScaleOfParent) const;
     aiMeshMorphAnim* weights(const fbx::Take& take, std::size_t model) const;
 
     aiScene& _scene;
@@ -390,41 +370,51 @@ void FbxCompletion::writeTakes()
     _scene.mAnimations = newArray(animations, _scene.mNumAnimations);
 }
 
-void FbxCompletion::addModel(const fbx::Take& take, std::size_t model, std::vector<aiNodeAnim*>& channels) const
+void FbxCompletion::addModel(const fbx::Take& take, std::size_t number, std::vector<aiNodeAnim*>& channels) const
 {
-    const bool isCompensated = _compensated.count(model) > 0;
-    const bool isAnimated = tracksOf(take, static_cast<int>(model));
-    const bool isParentAnimated = isCompensated && tracksOf(take, _fbx.models[model].parent);
-    if (isAnimated) channels.push_back(transforms(_fbx.models[model].uniqueName, take, model, false));
-    if (isCompensated && (isAnimated || isParentAnimated))
-        channels.push_back(transforms(compensationName(_fbx.models[model]), take, model, true));
-}
-
-aiNodeAnim* FbxCompletion::transforms(const std::string& node, const fbx::Take& take, std::size_t number,
-                                      bool isScaleOfParent) const
-{
-    Motion motion{_fbx.models[number], tracksOf(take, static_cast<int>(number)), _metres};
-    motion.hasTranslation = isScaleOfParent || _compensated.count(number) == 0;
-    if (isScaleOfParent)
+    const fbx::Model& model = _fbx.models[number];
+    const fbx::ModelTracks* const tracks = tracksOf(take, static_cast<int>(number));
+    const auto placement = [&](double time, bool before)
     {
-        motion.parent = &_fbx.models[static_cast<std::size_t>(motion.model.parent)];
-        motion.parentTracks = tracksOf(take, motion.model.parent);
-    }
-    aiNodeAnim* const made = new aiNodeAnim;
-    made->mNodeName = node;
-    made->mPositionKeys = vectorKeys(motion.translations(take), made->mNumPositionKeys);
-    made->mScalingKeys = vectorKeys(motion.scales(take), made->mNumScalingKeys);
-    const auto rotations = motion.rotations(take);
-    made->mNumRotationKeys = static_cast<unsigned int>(rotations.size());
-    made->mRotationKeys = new aiQuatKey[rotations.size()];
-    for (std::size_t i = 0; i < rotations.size(); ++i)
+        fbx::Placement made = model.rest();
+        if (tracks)
+            made = model.placement(tracks->translation.at(time, before), tracks->rotation.at(time, before),
+                                   tracks->scale.at(time, before));
+        made.translation *= _metres;
+        return made;
+    };
+    Motion motion{placement};
+    if (tracks)
     {
-        const glm::dquat& each = rotations[i].second;
-        made->mRotationKeys[i] =
-            aiQuatKey(rotations[i].first, aiQuaternion(static_cast<float>(each.w), static_cast<float>(each.x),
-                                                       static_cast<float>(each.y), static_cast<float>(each.z)));
+        tracks->translation.appendTimes(motion.translationTimes);
+        tracks->rotation.appendTimes(motion.rotationTimes);
+        tracks->scale.appendTimes(motion.scaleTimes);
+        for (const fbx::AnimatedVector* const other : {&tracks->rotation, &tracks->scale})
+            if (model.hasPivots()) other->appendTimes(motion.translationTimes);
     }
-    return made;
+    const fbx::ModelTracks* const parentTracks = tracksOf(take, model.parent);
+    if (_compensated.count(number) > 0 && (tracks || parentTracks))
+    {
+        const auto compensation = [&](double time, bool before)
+        {
+            fbx::Placement made;
+            made.translation = placement(time, before).translation;
+            made.scale = inverseScale(parentTracks ? parentTracks->scale.at(time, before)
+                                                   : _fbx.models[static_cast<std::size_t>(model.parent)].scale);
+            return made;
+        };
+        Motion above{compensation, std::move(motion.translationTimes)};
+        if (parentTracks) parentTracks->scale.appendTimes(above.scaleTimes);
+        channels.push_back(transforms(compensationName(model), take, above));
+        motion.translationTimes.clear();
+        motion.at = [&](double time, bool before)
+        {
+            fbx::Placement made = placement(time, before);
+            made.translation = glm::dvec3(0.0); // the node above has it
+            return made;
+        };
+    }
+    if (tracks) channels.push_back(transforms(model.uniqueName, take, motion));
 }
 
 aiMeshMorphAnim* FbxCompletion::weights(const fbx::Take& take, std::size_t number) const
@@ -466,8 +456,9 @@ aiMeshMorphAnim* FbxCompletion::weights(const fbx::Take& take, std::size_t numbe
             distance = std::max(distance, std::abs(a[i] - b[i]));
         return distance;
     };
-    const auto keys =
-        relativeTrack(std::move(times), take.begin, take.end, weightsAt, mixed, apart, maxMagnitude, relativeTolerance);
+    const auto max = [&](const std::vector<double>& values)
+    { return apart(values, std::vector<double>(values.size())); };
+    const auto keys = keysOf(take, std::move(times), weightsAt, mixed, apart, relativeTolerance, max);
     aiMeshMorphAnim* const made = new aiMeshMorphAnim;
     made->mName = _morphed.at(number) + "*0";
     made->mNumKeys = static_cast<unsigned int>(keys.size());

@@ -33,15 +33,11 @@ using nlohmann::json;
 constexpr std::size_t maxBytes = std::size_t(256) << 20; ///< of an encoded picture
 constexpr std::uint64_t maxPixels = std::uint64_t(1) << 26;
 
-bool begins(const std::string& bytes, std::string_view magic)
-{
-    return bytes.compare(0, magic.size(), magic) == 0;
-}
-
 /// What a glTF file may have as it is; null: something else.
 const char* mimeTypeOf(const std::string& bytes)
 {
-    return begins(bytes, "\x89PNG\r\n") ? "image/png" : begins(bytes, "\xff\xd8\xff") ? "image/jpeg" : nullptr;
+    if (bytes.rfind("\x89PNG\r\n", 0) == 0) return "image/png";
+    return bytes.rfind("\xff\xd8\xff", 0) == 0 ? "image/jpeg" : nullptr;
 }
 
 std::uint64_t numberAt(const std::string& bytes, std::size_t offset, std::size_t length)
@@ -80,18 +76,9 @@ Result<std::string> pngOfPixels(const aiTexture& texture)
     if (static_cast<std::uint64_t>(texture.mWidth) * texture.mHeight > maxPixels)
         return Error{"has more than " + std::to_string(maxPixels) + " pixels"};
     osg::ref_ptr<osg::Image> image = new osg::Image;
-    image->allocateImage(static_cast<int>(texture.mWidth), static_cast<int>(texture.mHeight), 1, GL_RGBA,
-                         GL_UNSIGNED_BYTE);
-    for (unsigned int row = 0; row < texture.mHeight; ++row)
-    {
-        unsigned char* to = image->data(0, texture.mHeight - 1 - row); // OSG's rows go up
-        for (unsigned int column = 0; column < texture.mWidth; ++column)
-        {
-            const aiTexel& texel = texture.pcData[static_cast<std::size_t>(row) * texture.mWidth + column];
-            for (const unsigned char channel : {texel.r, texel.g, texel.b, texel.a})
-                *to++ = channel;
-        }
-    }
+    image->setImage(static_cast<int>(texture.mWidth), static_cast<int>(texture.mHeight), 1, GL_RGBA, GL_BGRA,
+                    GL_UNSIGNED_BYTE, reinterpret_cast<unsigned char*>(texture.pcData), osg::Image::NO_DELETE);
+    image->setOrigin(osg::Image::TOP_LEFT);
     return gltf::encodePng(*image);
 }
 
@@ -252,7 +239,7 @@ private:
                 if (json moved = transformOf(transform); !moved.is_null())
                 {
                     info["extensions"]["KHR_texture_transform"] = std::move(moved);
-                    _writer.document["extensionsUsed"] = json::array({"KHR_texture_transform"});
+                    _writer.useExtension("KHR_texture_transform");
                 }
             return Texture{std::move(info), path.C_Str()};
         }

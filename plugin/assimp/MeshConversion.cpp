@@ -161,14 +161,14 @@ void MeshWriter::addTargets(const aiMesh& mesh, json& made)
     {
         const aiAnimMesh& target = *mesh.mAnimMeshes[i];
         json deltas = json::object();
-        if (target.mNumVertices == mesh.mNumVertices && target.mVertices)
-            deltas["POSITION"] =
-                _writer.addFloats(finite(differences(target.mVertices, mesh.mVertices, mesh.mNumVertices), mesh),
-                                  "VEC3", gltf::GlbWriter::Use::Vertices);
-        if (target.mNumVertices == mesh.mNumVertices && target.mNormals && mesh.HasNormals())
-            deltas["NORMAL"] =
-                _writer.addFloats(finite(differences(target.mNormals, mesh.mNormals, mesh.mNumVertices), mesh), "VEC3",
-                                  gltf::GlbWriter::Use::Vertices);
+        const auto add = [&](const char* name, const aiVector3D* morphed, const aiVector3D* base)
+        {
+            if (target.mNumVertices != mesh.mNumVertices || !morphed || !base) return;
+            deltas[name] = _writer.addFloats(finite(differences(morphed, base, mesh.mNumVertices), mesh), "VEC3",
+                                             gltf::GlbWriter::Use::Vertices);
+        };
+        add("POSITION", target.mVertices, mesh.mVertices);
+        add("NORMAL", target.mNormals, mesh.mNormals);
         made["targets"].push_back(std::move(deltas));
     }
 }

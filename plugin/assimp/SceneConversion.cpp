@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "assimp/SceneConversion.h"
 
+#include "assimp/FbxConversion.h"
 #include "assimp/MaterialConversion.h"
 #include "assimp/MeshConversion.h"
-#include "assimp/NodeMarks.h"
 #include "gltf/export/GlbWriter.h"
 
 #include <assimp/scene.h>
@@ -56,15 +56,19 @@ public:
     AnimationWriter(const aiAnimation& animation, gltf::GlbWriter& writer) : _animation(animation), _writer(writer)
     {
         _secondsATick = 1.0 / (animation.mTicksPerSecond > 0.0 ? animation.mTicksPerSecond : usualTicksPerSecond);
+        const auto startWith = [this](const auto* keys, unsigned int count)
+        {
+            if (count > 0 && std::isfinite(keys[0].mTime)) _start = std::min(_start, keys[0].mTime);
+        };
         for (unsigned int i = 0; i < animation.mNumChannels; ++i)
         {
             const aiNodeAnim& channel = *animation.mChannels[i];
-            if (channel.mNumPositionKeys > 0) startAt(channel.mPositionKeys[0].mTime);
-            if (channel.mNumRotationKeys > 0) startAt(channel.mRotationKeys[0].mTime);
-            if (channel.mNumScalingKeys > 0) startAt(channel.mScalingKeys[0].mTime);
+            startWith(channel.mPositionKeys, channel.mNumPositionKeys);
+            startWith(channel.mRotationKeys, channel.mNumRotationKeys);
+            startWith(channel.mScalingKeys, channel.mNumScalingKeys);
         }
         for (unsigned int i = 0; i < animation.mNumMorphMeshChannels; ++i)
-            if (animation.mMorphMeshChannels[i]->mNumKeys > 0) startAt(animation.mMorphMeshChannels[i]->mKeys[0].mTime);
+            startWith(animation.mMorphMeshChannels[i]->mKeys, animation.mMorphMeshChannels[i]->mNumKeys);
     }
 
     /// Null: nothing moves.
@@ -80,11 +84,6 @@ public:
     }
 
 private:
-    void startAt(double ticks)
-    {
-        if (std::isfinite(ticks)) _start = std::min(_start, ticks);
-    }
-
     /// numbers: of a key, all of one length.
     template <class Key, class Numbers>
     void add(const Key* keys, std::size_t count, const Numbers& numbers, std::size_t node, const char* path,
@@ -216,8 +215,7 @@ public:
         }
     }
 
-    std::optional<Error> write(const std::string& modelFile, const gltf::ImportOptions& options);
-    Result<std::string> glb() const { return _writer.glb(_report); }
+    Result<std::string> write(const std::string& modelFile, const gltf::ImportOptions& options);
 
 private:
     struct Node
@@ -229,9 +227,7 @@ private:
 
     std::optional<Error> addNodes(std::size_t maxDepth);
     void addMeshes(std::size_t number, MeshWriter& meshes);
-    std::size_t addChild(std::size_t parent, const std::string& name);
     json transformOf(const aiNode& node);
-    void hide(json& node);
 
     const aiScene& _scene;
     gltf::Report& _report;
@@ -242,12 +238,12 @@ private:
     MorphedNodes _morphed;
 };
 
-std::optional<Error> SceneWriter::write(const std::string& modelFile, const gltf::ImportOptions& options)
+Result<std::string> SceneWriter::write(const std::string& modelFile, const gltf::ImportOptions& options)
 {
     const auto isTooLarge = [&] { return _writer.size() > options.maxDecodedBytes; };
     const Error tooLarge{"the scene has more than " + std::to_string(options.maxDecodedBytes) +
                          " bytes of vertices and keys"};
-    if (const std::optional<Error> fault = addNodes(options.maxNodeDepth)) return fault;
+    if (const std::optional<Error> fault = addNodes(options.maxNodeDepth)) return *fault;
     MeshWriter meshes(_numbers, _writer, _report);
     for (std::size_t number = 0; number < _nodes.size(); ++number)
     {
@@ -264,7 +260,7 @@ std::optional<Error> SceneWriter::write(const std::string& modelFile, const gltf
                             {{"name", "axes"}, {"matrix", columnMajor(turn)}, {"children", json::array({0})}});
     _writer.document["scenes"] = json::array({json::object({{"nodes", json::array({root})}})});
     _writer.document["scene"] = 0;
-    return std::nullopt;
+    return _writer.glb(_report);
 }
 
 std::optional<Error> SceneWriter::addNodes(std::size_t maxDepth)
@@ -293,16 +289,11 @@ std::optional<Error> SceneWriter::addNodes(std::size_t maxDepth)
     for (std::size_t number = 0; number < _nodes.size(); ++number)
     {
         nodes[number].update(transformOf(*_nodes[number].node));
-        if (marksOf(*_nodes[number].node).isHidden) hide(nodes[number]);
+        if (!marksOf(*_nodes[number].node).isHidden) continue;
+        nodes[number]["extensions"]["KHR_node_visibility"]["visible"] = false;
+        _writer.useExtension("KHR_node_visibility");
     }
     return std::nullopt;
-}
-
-void SceneWriter::hide(json& node)
-{
-    const char* const extension = "KHR_node_visibility";
-    node["extensions"][extension]["visible"] = false;
-    _writer.useExtension(extension);
 }
 
 json SceneWriter::transformOf(const aiNode& node)
@@ -324,14 +315,6 @@ json SceneWriter::transformOf(const aiNode& node)
             {"scale", {scale.x, scale.y, scale.z}}};
 }
 
-std::size_t SceneWriter::addChild(std::size_t parent, const std::string& name)
-{
-    json& nodes = _writer.document["nodes"];
-    const std::size_t number = gltf::append(nodes, {{"name", name}});
-    nodes[parent]["children"].push_back(number);
-    return number;
-}
-
 void SceneWriter::addMeshes(std::size_t number, MeshWriter& meshes)
 {
     const aiNode& node = *_nodes[number].node;
@@ -349,9 +332,14 @@ void SceneWriter::addMeshes(std::size_t number, MeshWriter& meshes)
         if (group.empty()) continue;
         const std::optional<WrittenMesh> written = meshes.write(group, number);
         if (!written) continue;
-        const bool isTaken = _writer.document["nodes"][number].contains("mesh");
-        const std::size_t drawn = isTaken ? addChild(number, marksOf(node).name) : number;
-        json& made = _writer.document["nodes"][drawn];
+        json& nodes = _writer.document["nodes"];
+        std::size_t drawn = number;
+        if (nodes[number].contains("mesh"))
+        {
+            drawn = gltf::append(nodes, {{"name", marksOf(node).name}});
+            nodes[number]["children"].push_back(drawn);
+        }
+        json& made = nodes[drawn];
         made["mesh"] = written->mesh;
         if (written->skin) made["skin"] = *written->skin;
         if (group.front()->mNumAnimMeshes > 0)
@@ -365,9 +353,7 @@ Result<std::string> glbOf(const aiScene& scene, const std::string& modelFile, co
                           gltf::Report& report)
 {
     if (!scene.mRootNode) return Error{"the file has no nodes"};
-    SceneWriter writer(scene, report);
-    if (const std::optional<Error> fault = writer.write(modelFile, options)) return *fault;
-    return writer.glb();
+    return SceneWriter(scene, report).write(modelFile, options);
 }
 
 } // namespace osgGpuAnimation::assimp

@@ -1,21 +1,27 @@
 // SPDX-License-Identifier: MIT
 #include "crowd/CrowdGrid.h"
 
-#include "crowd/RandomOutfits.h"
-#include "crowd/RandomShare.h"
 #include "gltf/file/Report.h"
 
 #include <osgGpuAnimation/frame/PoseStatistics.h>
+#include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/detail/StillParts.h>
+#include <osgGpuAnimation/nodes/OutfitsFile.h>
+#include <osgGpuAnimation/scene/OsgMatrix.h>
 #include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
 #include <osg/Notify>
+#include <osgDB/FileNameUtils>
 #include <osgDB/ReadFile>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <optional>
 #include <random>
+#include <set>
+#include <string>
 
 namespace osgGpuAnimation::crowd
 {
@@ -25,6 +31,13 @@ namespace
 
 /// The gap between neighbours, as a fraction of the larger side.
 constexpr double gap = 0.2;
+constexpr std::size_t randomOutfitCount = 24;
+
+/// Random in [0, 1), the same with every standard library (std::uniform_real_distribution is not).
+double randomShare(std::mt19937& random)
+{
+    return static_cast<double>(random()) / 4294967296.0;
+}
 
 Result<std::size_t> findClip(const AnimationSet& set, const std::string& nameOrNumber)
 {
@@ -52,14 +65,12 @@ Result<std::vector<std::size_t>> findClips(const AnimationSet& set, const std::v
 /// The larger horizontal side of a clip's box under the character's placement; nothing if the box is empty.
 std::optional<double> widthOf(const AnimatedCharacter& character, const osg::Matrixd& placement, int clip, bool isYUp)
 {
-    const osg::BoundingBox box = character.getClipBounds(clip);
-    osg::BoundingBoxd placed;
-    for (unsigned int i = 0; i < 8 && box.valid(); ++i)
-        placed.expandBy(osg::Vec3d(box.corner(i)) * placement);
-    if (!placed.valid()) return std::nullopt;
-    const osg::Vec3d size = placed._max - placed._min;
+    osg::Matrixd turned = placement; // a box far from the origin would lose digits
+    turned.setTrans(osg::Vec3d());
+    const osg::BoundingBox box = transformed(character.getClipBounds(clip), turned);
+    const osg::Vec3d size = box._max - box._min;
     const double width = std::max(size.x(), isYUp ? size.z() : size.y());
-    return width > 0.0 ? std::optional(width) : std::nullopt;
+    return width > 0.0 ? std::optional(width) : std::nullopt; // that of an empty box is below 0
 }
 
 /// The width that half of the clips do not exceed: a few clips, such as a fall, do not spread out the crowd. 1 if the
@@ -97,6 +108,73 @@ AnimationController randomController(const AnimatedCrowd& crowd, const std::vect
     const auto choice = static_cast<std::size_t>(randomShare(random) * static_cast<double>(clips.size()));
     if (controller.play(clips[choice])) controller.seek(randomShare(random) * controller.duration());
     return controller;
+}
+
+/// The joint that carries the part: a node with a mesh may be a joint itself, below the hand that holds it.
+int carrierOf(const Skeleton& skeleton, int joint, const SkinnedGeometry& part)
+{
+    if (joint < 0) return joint;
+    const Joint& own = skeleton.joint(static_cast<std::size_t>(joint));
+    return own.name == part.getName() && own.parent >= 0 ? own.parent : joint;
+}
+
+/// True for materials that no tint suits.
+bool isOfBodies(const std::string& material)
+{
+    const std::string name = osgDB::convertToLowerCase(material);
+    constexpr const char* words[] = {"skin", "face", "head", "eye", "hair", "teeth", "mouth"};
+    return std::any_of(std::begin(words), std::end(words),
+                       [&](const char* word) { return name.find(word) != std::string::npos; });
+}
+
+/// hue: in [0, 1). saturation, value: in [0, 1].
+osg::Vec4 colorOf(float hue, float saturation, float value)
+{
+    const auto channel = [&](float shift)
+    {
+        const float place = std::fmod(hue * 6.0f + shift, 6.0f);
+        return value - value * saturation * std::clamp(std::min(place, 4.0f - place), 0.0f, 1.0f);
+    };
+    return {channel(5.0f), channel(3.0f), channel(1.0f), 1.0f};
+}
+
+/// Outfits for the option `outfits=random`. Rigid parts on one joint exclude each other: an outfit shows one of them or
+/// none. If the crowd has several materials, each gets a pale colour of a random hue, but those whose names speak of
+/// skin, faces, eyes or hair.
+std::vector<OutfitShare> randomOutfits(const AnimatedCrowd& crowd, std::uint32_t seed)
+{
+    const std::vector<PaletteEntry>& palette = crowd.getAnimationSet().palette();
+    std::map<int, std::set<std::string>> partsOfJoint;
+    std::set<std::string> materials;
+    forEachMesh(crowd,
+                [&](const SkinnedGeometry& mesh)
+                {
+                    const auto entry = static_cast<std::size_t>(mesh.getRigidEntry()); // -1 becomes huge
+                    if (entry < palette.size() && !mesh.getName().empty())
+                        partsOfJoint[carrierOf(crowd.getAnimationSet().skeleton(), palette[entry].joint, mesh)].insert(
+                            mesh.getName());
+                    if (mesh.getStateSet() && !mesh.getStateSet()->getName().empty())
+                        materials.insert(mesh.getStateSet()->getName());
+                });
+    std::mt19937 random(seed);
+    const auto share = [&] { return static_cast<float>(randomShare(random)); };
+    std::vector<OutfitShare> outfits;
+    for (std::size_t i = 0; i < randomOutfitCount; ++i)
+    {
+        outfits.push_back({new Outfit});
+        outfits.back().outfit->setName("random " + std::to_string(i + 1));
+        for (const auto& [joint, parts] : partsOfJoint)
+        {
+            std::size_t chosen = random() % (parts.size() + 1); // the last: none
+            for (const std::string& part : parts)
+                outfits.back().outfit->setVisible(part, chosen-- == 0);
+        }
+        for (const std::string& material : materials)
+            if (materials.size() > 1 && !isOfBodies(material))
+                outfits.back().outfit->setColor(material,
+                                                colorOf(share(), 0.15f + 0.35f * share(), 0.75f + 0.25f * share()));
+    }
+    return outfits;
 }
 
 /// The outfits that the options ask for, which the crowd then has.

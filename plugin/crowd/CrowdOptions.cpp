@@ -9,8 +9,9 @@
 #include <osgDB/FileNameUtils>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <set>
+#include <sstream>
 
 namespace osgGpuAnimation::crowd
 {
@@ -18,14 +19,8 @@ namespace osgGpuAnimation::crowd
 namespace
 {
 
-constexpr std::array<const char*, 4> ofCrowdsAlone{"clips", "spacing", "seed", "outfits"};
-constexpr std::array<const char*, 6> ofSinglesAlone{"clip", "start", "randomStart", "speed", "loop", "fade"};
-
-template <typename Names>
-bool isAmong(const Names& names, const std::string& name)
-{
-    return std::find(names.begin(), names.end(), name) != names.end();
-}
+const std::set<std::string> ofCrowdsAlone{"clips", "spacing", "seed", "outfits"};
+const std::set<std::string> ofSinglesAlone{"clip", "start", "randomStart", "speed", "loop", "fade"};
 
 /// False if the whole text is not a number.
 template <typename Number>
@@ -49,28 +44,13 @@ Result<void> readSize(const std::string& size, CrowdOptions& out)
     return {};
 }
 
-/// The parts between commas.
-std::vector<std::string> splitAtCommas(const std::string& text)
-{
-    std::vector<std::string> parts(1);
-    for (const char letter : text)
-    {
-        if (letter == ',')
-            parts.emplace_back();
-        else
-            parts.back() += letter;
-    }
-    return parts;
-}
-
 /// True for `clips=FILE`, the model's option: the value ends in the extension of a format that has characters. Others
 /// are names of clips, with dots, too: `mixamo.com`.
 bool namesClipsFile(const gltf::OptionWord& word)
 {
-    constexpr const char* formats[] = {"glb", "gltf", "fbx",     "bvh",     "dae",  "x",
-                                       "smd", "b3d",  "md5mesh", "md5anim", "ms3d", "ogex"};
-    const std::string extension = osgDB::getLowerCaseFileExtension(word.value.value_or(""));
-    return word.name == "clips" && std::find(std::begin(formats), std::end(formats), extension) != std::end(formats);
+    static const std::set<std::string> formats{"glb", "gltf", "fbx",     "bvh",     "dae",  "x",
+                                               "smd", "b3d",  "md5mesh", "md5anim", "ms3d", "ogex"};
+    return word.name == "clips" && formats.count(osgDB::getLowerCaseFileExtension(word.value.value_or(""))) > 0;
 }
 
 /// The values that the option accepts, for messages.
@@ -95,9 +75,11 @@ bool apply(const gltf::OptionWord& word, CrowdOptions& out)
     if (word.name == "spacing")
         return readNumber(value, out.spacing.emplace()) && std::isfinite(*out.spacing) && *out.spacing > 0.0;
     if (word.name != "clips" || namesClipsFile(word)) return true;
-    out.clips = splitAtCommas(value);
-    for (const std::string& clip : out.clips)
-        if (clip.empty()) return false;
+    out.clips.clear();
+    std::istringstream clips(value + ',');
+    while (std::getline(clips, out.clips.emplace_back(), ','))
+        if (out.clips.back().empty()) return false;
+    out.clips.pop_back();
     return true;
 }
 
@@ -121,7 +103,7 @@ std::string modelOptions(const std::string& options)
 {
     std::vector<gltf::OptionWord> words = gltf::splitOptions(options);
     const auto isNotTheModels = [](const gltf::OptionWord& word)
-    { return (isAmong(ofCrowdsAlone, word.name) && !namesClipsFile(word)) || isAmong(ofSinglesAlone, word.name); };
+    { return (ofCrowdsAlone.count(word.name) > 0 && !namesClipsFile(word)) || ofSinglesAlone.count(word.name) > 0; };
     words.erase(std::remove_if(words.begin(), words.end(), isNotTheModels), words.end());
     return gltf::joinOptions(words);
 }
@@ -132,11 +114,11 @@ std::vector<std::string> optionHints(const std::string& options)
     std::vector<gltf::OptionHelp> own = optionHelp();
     own.erase(std::remove_if(own.begin(), own.end(),
                              [](const gltf::OptionHelp& help)
-                             { return !isAmong(ofCrowdsAlone, gltf::optionName(help)); }),
+                             { return ofCrowdsAlone.count(gltf::optionName(help)) == 0; }),
               own.end());
     std::vector<std::string> hints = gltf::misspeltOptions(options, own, gltf::optionHelp());
     for (const gltf::OptionWord& word : gltf::splitOptions(options))
-        if (isAmong(ofSinglesAlone, word.name))
+        if (ofSinglesAlone.count(word.name) > 0)
             hints.push_back(gltf::quoted(word.name) +
                             " applies to single characters only and has no effect on a crowd");
     return hints;

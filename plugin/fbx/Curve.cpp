@@ -157,11 +157,6 @@ void Curve::appendTimes(std::vector<double>& times) const
         times.push_back(key.time);
 }
 
-bool AnimatedVector::isAnimated() const
-{
-    return !layers.empty();
-}
-
 glm::dvec3 AnimatedVector::at(double seconds, bool before) const
 {
     glm::dvec3 value = rest;

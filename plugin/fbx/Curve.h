@@ -70,7 +70,6 @@ struct AnimatedVector
     bool isFactor = false; ///< additive layers multiply
     std::vector<Layer> layers;
 
-    bool isAnimated() const;
     glm::dvec3 at(double seconds, bool before = false) const;
     void appendTimes(std::vector<double>& times) const;
 };

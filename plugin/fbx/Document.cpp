@@ -27,6 +27,12 @@ Number littleEndian(const char* bytes)
     return number;
 }
 
+/// Of an element of an array of that type.
+std::size_t bytesOf(char type)
+{
+    return type == 'd' || type == 'l' ? 8 : type == 'b' || type == 'c' ? 1 : 4;
+}
+
 double parsedNumber(std::string_view text)
 {
     if (!text.empty() && text.front() == '+') text.remove_prefix(1);
@@ -41,21 +47,7 @@ class BinaryParser
 public:
     BinaryParser(std::string_view bytes, int version) : _bytes(bytes), _isWide(version >= 7500) {}
 
-    Result<void> parse(Element& root)
-    {
-        std::size_t at = headerBytes;
-        // The record of zeros that ends the list may be missing where the file ends.
-        while (at + recordBytes() <= _bytes.size())
-        {
-            Element child;
-            const Result<std::size_t> next = record(at, _bytes.size(), child, 1);
-            if (!next) return next.error();
-            if (next.value() == 0) break;
-            root.children.push_back(std::move(child));
-            at = next.value();
-        }
-        return {};
-    }
+    Result<void> parse(Element& root) { return records(headerBytes, _bytes.size(), root, 1); }
 
 private:
     std::size_t recordBytes() const { return _isWide ? 25 : 13; }
@@ -69,6 +61,22 @@ private:
     static Error broken(std::size_t at, const char* what)
     {
         return {"FBX record at byte " + std::to_string(at) + ": " + what};
+    }
+
+    Result<void> records(std::size_t at, std::size_t limit, Element& parent, int depth)
+    {
+        // The record of zeros that ends the list may be missing where the file ends.
+        const std::size_t least = depth == 1 ? recordBytes() : 1;
+        while (at + least <= limit)
+        {
+            Element child;
+            const Result<std::size_t> next = record(at, limit, child, depth);
+            if (!next) return next.error();
+            if (next.value() == 0) break;
+            parent.children.push_back(std::move(child));
+            at = next.value();
+        }
+        return {};
     }
 
     /// The end of the record; 0: the record that ends a list.
@@ -86,16 +94,8 @@ private:
         const std::size_t endOfValues = position + static_cast<std::size_t>(length);
         for (std::uint64_t i = 0; i < count; ++i)
             if (!addValue(position, endOfValues, element)) return broken(at, "a value ends beyond it");
-        position = endOfValues;
-        while (position < end)
-        {
-            Element child;
-            const Result<std::size_t> next = record(position, static_cast<std::size_t>(end), child, depth + 1);
-            if (!next) return next.error();
-            if (next.value() == 0) break;
-            element.children.push_back(std::move(child));
-            position = next.value();
-        }
+        if (const Result<void> read = records(endOfValues, static_cast<std::size_t>(end), element, depth + 1); !read)
+            return read.error();
         return static_cast<std::size_t>(end);
     }
 
@@ -154,8 +154,7 @@ private:
         element.arrayCount = littleEndian<std::uint32_t>(&_bytes[position]);
         element.isDeflated = littleEndian<std::uint32_t>(&_bytes[position + 4]) == 1;
         const std::size_t given = littleEndian<std::uint32_t>(&_bytes[position + 8]);
-        const std::size_t bytesEach = type == 'd' || type == 'l' ? 8 : type == 'b' || type == 'c' ? 1 : 4;
-        const std::size_t stored = element.isDeflated ? given : bytesEach * element.arrayCount;
+        const std::size_t stored = element.isDeflated ? given : bytesOf(type) * element.arrayCount;
         position += 12;
         if (end - position < stored) return false;
         element.array = _bytes.substr(position, stored);
@@ -335,10 +334,7 @@ std::vector<double> Element::numbers() const
 {
     if (const Element* const content = child("a")) return textNumbers(content->array);
     if (arrayType == 0) return {};
-    const std::size_t bytesEach = arrayType == 'd' || arrayType == 'l'   ? 8
-                                  : arrayType == 'b' || arrayType == 'c' ? 1
-                                                                         : 4;
-    const std::string decoded = isDeflated ? inflated(array, bytesEach * arrayCount) : std::string();
+    const std::string decoded = isDeflated ? inflated(array, bytesOf(arrayType) * arrayCount) : std::string();
     const std::string_view bytes = isDeflated ? std::string_view(decoded) : array;
     switch (arrayType)
     {

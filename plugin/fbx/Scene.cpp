@@ -22,6 +22,10 @@ namespace
 
 constexpr double ticksPerSecond = 46186158000.0, ticksPerSecondOfVersion8 = 141120000.0;
 constexpr int originalTimeDefinition = 127;
+constexpr std::pair<std::string_view, AnimatedVector ModelTracks::*> trackNames[] = {
+    {"Lcl Translation", &ModelTracks::translation},
+    {"Lcl Rotation", &ModelTracks::rotation},
+    {"Lcl Scaling", &ModelTracks::scale}};
 constexpr std::string_view componentNames[3] = {"d|X", "d|Y", "d|Z"};
 
 /// An object of the file: `Model: 1001, "Model::door", "Mesh"`.
@@ -95,7 +99,6 @@ private:
     void readObjects();
     void readConnections();
     void readModels();
-    void warnOfInheritance();
     void readShapes();
     void readSkins();
     void addBinding(std::int64_t cluster, const Element& element, Model& model);
@@ -112,14 +115,13 @@ private:
         const auto found = _objects.find(id);
         return found == _objects.end() ? nullptr : &found->second;
     }
-    const std::vector<Connection>& sources(std::int64_t destination) const { return listed(_sources, destination); }
-    const std::vector<Connection>& destinations(std::int64_t source) const { return listed(_destinations, source); }
-    static const std::vector<Connection>& listed(const std::unordered_map<std::int64_t, std::vector<Connection>>& lists,
-                                                 std::int64_t id)
+    const std::vector<Connection>& sources(std::int64_t destination) { return _sources[destination]; }
+    const std::vector<Connection>& destinations(std::int64_t source) { return _destinations[source]; }
+    /// The curve of a connection; null: it has none.
+    const Element* curveOf(const Connection& source) const
     {
-        static const std::vector<Connection> none;
-        const auto found = lists.find(id);
-        return found == lists.end() ? none : found->second;
+        const Object* const found = object(source.other);
+        return found && found->kind == "AnimationCurve" ? found->element : nullptr;
     }
     /// The values of a property after its name, type, label and flags.
     static const Element* property(const Element& element, std::string_view name);
@@ -269,21 +271,15 @@ void SceneReader::readModels()
         _modelIds.push_back(id);
         _scene.models.push_back(std::move(model));
     }
-    for (std::size_t number = 0; number < _modelIds.size(); ++number)
-        for (const Connection& each : destinations(_modelIds[number]))
-            if (const auto parent = _models.find(each.other); parent != _models.end() && each.property.empty())
-                _scene.models[number].parent = static_cast<int>(parent->second);
-    warnOfInheritance();
-}
-
-/// InheritType 0, the scale of the parent along the axes of the model, is a matrix that shears where that scale has
-/// axes.
-void SceneReader::warnOfInheritance()
-{
-    for (std::size_t number = 0; number < _modelIds.size(); ++number)
+    for (std::size_t i = 0; i < _modelIds.size(); ++i)
     {
-        const Model& model = _scene.models[number];
-        if (model.parent < 0 || this->number(*object(_modelIds[number])->element, "InheritType", 1.0) != 0.0) continue;
+        Model& model = _scene.models[i];
+        for (const Connection& each : destinations(_modelIds[i]))
+            if (const auto parent = _models.find(each.other); parent != _models.end() && each.property.empty())
+                model.parent = static_cast<int>(parent->second);
+        // InheritType 0, the scale of the parent along the axes of the model, is a matrix that shears where that scale
+        // has axes.
+        if (model.parent < 0 || number(*object(_modelIds[i])->element, "InheritType", 1.0) != 0.0) continue;
         const glm::dvec3& above = _scene.models[static_cast<std::size_t>(model.parent)].scale;
         if (above.x != above.y || above.y != above.z)
             _scene.warnings.push_back("node " + gltf::quoted(model.name) +
@@ -398,31 +394,24 @@ void SceneReader::readCurveNode(std::int64_t id, std::int64_t layer, Take& take,
         if (const auto channel = _channels.find(target.other); channel != _channels.end())
         {
             for (const Connection& source : sources(id))
-                if (const Object* const curve = object(source.other); curve && curve->kind == "AnimationCurve")
-                    if (Curve read = Curve::of(*curve->element, _ticksPerSecond); !read.isEmpty())
+                if (const Element* const curve = curveOf(source))
+                    if (Curve read = Curve::of(*curve, _ticksPerSecond); !read.isEmpty())
                         take.shapes.push_back({channel->second, std::move(read)});
             continue;
         }
         const auto found = _models.find(target.other);
         if (found == _models.end()) continue;
         const Model& model = _scene.models[found->second];
-        const bool isMove = target.property == "Lcl Translation" || target.property == "Lcl Rotation" ||
-                            target.property == "Lcl Scaling";
-        if (!isMove)
+        const auto part = std::find_if(std::begin(trackNames), std::end(trackNames),
+                                       [&](const auto& each) { return each.first == target.property; });
+        if (part == std::end(trackNames))
         {
             warnOfLost(id, target.property, model, take);
             continue;
         }
-        ModelTracks made{found->second, {}, {}, {}};
-        made.translation.rest = model.translation;
-        made.rotation.rest = model.rotation;
-        made.scale.rest = model.scale;
-        made.scale.isFactor = true;
-        ModelTracks& all = tracks.emplace(found->second, std::move(made)).first->second;
-        AnimatedVector& animated = target.property == "Lcl Translation" ? all.translation
-                                   : target.property == "Lcl Rotation"  ? all.rotation
-                                                                        : all.scale;
-        addCurves(id, layer, animated);
+        const ModelTracks atRest{
+            found->second, {model.translation, false, {}}, {model.rotation, false, {}}, {model.scale, true, {}}};
+        addCurves(id, layer, tracks.emplace(found->second, atRest).first->second.*part->second);
     }
 }
 
@@ -436,8 +425,8 @@ void SceneReader::warnOfLost(std::int64_t curveNode, std::string_view name, cons
     if (std::find(std::begin(lost), std::end(lost), name) == std::end(lost)) return;
     std::vector<double> values;
     for (const Connection& source : sources(curveNode))
-        if (const Object* const curve = object(source.other); curve && curve->kind == "AnimationCurve")
-            for (const double value : curve->element->numbers("KeyValueFloat"))
+        if (const Element* const curve = curveOf(source))
+            for (const double value : curve->numbers("KeyValueFloat"))
                 values.push_back(name == "Visibility" ? static_cast<double>(value > 0.0) : value);
     const bool isStill = name == "Visibility"
                              ? std::count(values.begin(), values.end(), model.isHidden ? 1.0 : 0.0) == 0
@@ -455,7 +444,7 @@ void SceneReader::setMissingRests(const Take& take)
         Model& model = _scene.models[tracks.model];
         const auto set = [&](std::string_view name, const AnimatedVector& animated, glm::dvec3& rest)
         {
-            if (animated.isAnimated() && !property(*object(_modelIds[tracks.model])->element, name) &&
+            if (!animated.layers.empty() && !property(*object(_modelIds[tracks.model])->element, name) &&
                 _withoutRest.emplace(tracks.model, name).second)
                 rest = animated.at(take.begin);
         };

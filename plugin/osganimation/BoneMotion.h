@@ -9,6 +9,7 @@
 #include <osgAnimation/Bone>
 #include <osgAnimation/UpdateBone>
 
+#include <cmath>
 #include <vector>
 
 namespace osgGpuAnimation::osganimation
@@ -32,12 +33,6 @@ public:
     /// 1e-5 of its largest number. Where the matrix jumps, two keys are next to each other. target: the joint's index.
     std::vector<Channel> channels(int target);
 
-    // For linearKeys():
-    static double difference(const osg::Matrixd& a, const osg::Matrixd& b); ///< the largest of two numbers
-    static double size(const osg::Matrixd& matrix);                         ///< its largest number
-    /// Linear, and slerp the short way, as the kit mixes two keys.
-    static osg::Matrixd between(const osg::Matrixd& from, const osg::Matrixd& to, float share);
-
 private:
     osg::Matrixd _still; ///< without stacked transforms
     osg::ref_ptr<osgAnimation::UpdateBone> _update;
@@ -48,5 +43,17 @@ private:
 JointTransform transformOf(const osg::Matrixd& matrix);
 /// True if T · R · S differs from the matrix by less than 1e-4 of its largest number.
 bool hasNoShear(const osg::Matrixd& matrix);
+
+// For sampledTrack(): what keys may deviate from osgAnimation, as a part of the value, and how many of that are a jump.
+constexpr double tolerance = 1e-5, minJump = 100.0;
+
+/// The key times of all channels, ascending, each once: floats from 0 on, as clips have them. Others are left out.
+std::vector<double> keyTimesOf(const std::vector<osg::ref_ptr<osgAnimation::Channel>>& channels);
+
+/// The next float towards 0.
+inline double justBefore(double time)
+{
+    return static_cast<double>(std::nextafter(static_cast<float>(time), 0.0f));
+}
 
 } // namespace osgGpuAnimation::osganimation

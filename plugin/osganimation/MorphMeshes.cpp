@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "osganimation/MorphMeshes.h"
 
-#include "osganimation/CurveKeys.h"
+#include "osganimation/BoneMotion.h"
+
+#include <osgGpuAnimation/authoring/keyframes/SampledTrack.h>
 
 #include <algorithm>
 #include <cmath>
@@ -69,31 +71,29 @@ std::vector<float> MorphMotion::at(double seconds)
     return weights;
 }
 
-double MorphMotion::difference(const std::vector<float>& a, const std::vector<float>& b)
-{
-    double max = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-        max = std::max(max, static_cast<double>(std::abs(a[i] - b[i])));
-    return max;
-}
-
-std::vector<float> MorphMotion::between(const std::vector<float>& from, const std::vector<float>& to, float share)
-{
-    std::vector<float> mixed = from;
-    for (std::size_t i = 0; i < mixed.size(); ++i)
-        mixed[i] += share * (to[i] - from[i]);
-    return mixed;
-}
-
 Channel MorphMotion::channel(int target)
 {
     Channel made;
     made.path = Channel::Path::Weights;
     made.target = target;
-    for (const CurveKey<std::vector<float>>& key : linearKeys(*this, keyTimesOf(_channels)))
+    const auto function = [this](double time, bool before) { return at(before ? justBefore(time) : time); };
+    const auto between = [](std::vector<float> from, const std::vector<float>& to, double share)
     {
-        made.times.push_back(key.seconds);
-        made.values.insert(made.values.end(), key.value.begin(), key.value.end());
+        for (std::size_t i = 0; i < from.size(); ++i)
+            from[i] += static_cast<float>(share) * (to[i] - from[i]);
+        return from;
+    };
+    const auto inTolerances = [](const std::vector<float>& a, const std::vector<float>& b)
+    {
+        double max = 0.0;
+        for (std::size_t i = 0; i < a.size(); ++i)
+            max = std::max(max, static_cast<double>(std::abs(a[i] - b[i])));
+        return max / tolerance;
+    };
+    for (const auto& [time, weights] : sampledTrack(keyTimesOf(_channels), function, between, inTolerances, minJump))
+    {
+        made.times.push_back(time);
+        made.values.insert(made.values.end(), weights.begin(), weights.end());
     }
     return made;
 }

@@ -26,13 +26,8 @@ public:
     bool drives(std::size_t weight) const { return _targets[weight].valid(); }
     bool isMoving() const { return !_channels.empty(); } ///< a channel drives a weight
     std::vector<float> at(double seconds);               ///< one per target
-    /// Linear keys, see linearKeys(). target: the index of the morph weights.
+    /// Linear keys, as those of BoneMotion. target: the index of the morph weights.
     Channel channel(int target);
-
-    // For linearKeys():
-    static double difference(const std::vector<float>& a, const std::vector<float>& b); ///< the largest of two weights
-    static double size(const std::vector<float>&) { return 1.0; }
-    static std::vector<float> between(const std::vector<float>& from, const std::vector<float>& to, float share);
 
 private:
     std::vector<float> _rest;

@@ -73,35 +73,37 @@ public:
             bone = known->second;
             toBone.makeIdentity();
         }
-        if (auto* const rig = dynamic_cast<osgAnimation::RigGeometry*>(geometry))
-            addRig(*rig, toSkeleton, states);
+        auto* const rig = dynamic_cast<osgAnimation::RigGeometry*>(geometry);
+        RigMesh mesh{geometry, nullptr, {}, {}};
+        if (rig)
+            addBones(*rig, toSkeleton, mesh);
         else if (bone >= 0 && !isAnimated)
-            meshes.push_back({geometry, merged(states), {bone}, {toAffine(toBone)}});
-        else
-            return;
-        addMorph(meshes.back(), weights);
+        {
+            mesh.bones = {bone};
+            mesh.inverseBinds = {toAffine(toBone)};
+        }
+        if (mesh.bones.empty()) return;
+        mesh.state = merged(states);
+        addMorph(rig ? rig->getSourceGeometry() : geometry, weights, mesh);
+        meshes.push_back(std::move(mesh));
     }
 
     std::vector<RigMesh> meshes;
 
 private:
-    void addRig(osgAnimation::RigGeometry& rig, const osg::Matrixd& toSkeleton,
-                const std::vector<osg::StateSet*>& states)
+    void addBones(const osgAnimation::RigGeometry& rig, const osg::Matrixd& toSkeleton, RigMesh& mesh)
     {
-        RigMesh mesh{&rig, merged(states), {}, {}};
         if (!rig.getInfluenceMap())
         {
             _warnings.push_back("mesh \"" + rig.getName() + "\": it has no influence map; it is left out");
-            meshes.push_back(std::move(mesh)); // without bones
             return;
         }
-        for (const auto& [name, influence] : *rig.getInfluenceMap())
+        for (const auto& each : *rig.getInfluenceMap())
         {
-            static_cast<void>(influence);
-            const auto found = _byName.find(name);
+            const auto found = _byName.find(each.first);
             if (found == _byName.end())
             {
-                _warnings.push_back("mesh \"" + rig.getName() + "\": there is no bone \"" + name +
+                _warnings.push_back("mesh \"" + rig.getName() + "\": there is no bone \"" + each.first +
                                     "\"; it moves nothing");
                 continue;
             }
@@ -109,26 +111,20 @@ private:
             const osgAnimation::Bone& bone = *_bones[static_cast<std::size_t>(found->second)].bone;
             mesh.inverseBinds.push_back(toAffine(toSkeleton * bone.getInvBindMatrixInSkeletonSpace()));
         }
-        meshes.push_back(std::move(mesh));
     }
 
-    void addMorph(RigMesh& mesh, osgAnimation::UpdateMorph* weights)
+    void addMorph(osg::Geometry* source, osgAnimation::UpdateMorph* weights, RigMesh& mesh)
     {
-        auto* const rig = dynamic_cast<osgAnimation::RigGeometry*>(mesh.geometry.get());
-        osg::Geometry* const source = rig ? rig->getSourceGeometry() : mesh.geometry.get();
         auto* const morph = dynamic_cast<osgAnimation::MorphGeometry*>(source);
-        if (mesh.bones.empty())
-            meshes.pop_back();
-        else if (!morph || morph->getMorphTargetList().empty())
-            return;
-        else if (!morphTargetsOf(*morph))
+        if (!morph || morph->getMorphTargetList().empty()) return;
+        if (!morphTargetsOf(*morph))
+        {
             _warnings.push_back("mesh \"" + mesh.geometry->getName() +
                                 "\": its morph targets have other numbers of vertices; they are left out");
-        else
-        {
-            mesh.morph = morph;
-            mesh.weights = weights;
+            return;
         }
+        mesh.morph = morph;
+        mesh.weights = weights;
     }
 
     /// The same object for the same state sets.

@@ -57,14 +57,9 @@ public:
                 skeletons.push_back(skeleton);
         traverse(node);
     }
-    void apply(osg::Drawable& drawable) override
-    {
-        hasMorphs = hasMorphs || dynamic_cast<osgAnimation::MorphGeometry*>(&drawable);
-    }
 
     std::vector<Manager> managers;
     std::vector<osg::ref_ptr<osgAnimation::Skeleton>> skeletons;
-    bool hasMorphs = false;
 };
 
 /// Takes the update callbacks (as osgAnimation's UpdateMaterial) from the attributes below a node, and gives them back
@@ -325,9 +320,9 @@ Conversion convertOsgAnimation(osg::Node& node)
         if (skeleton == &node) result.node = character;
         result.characters.push_back(character);
     }
-    SceneParts left;
-    result.node->accept(left);
-    if (left.hasMorphs) result.warnings.push_back("MorphGeometry that no bone carries stays as it is");
+    const auto isMorph = [](osg::Node& node) { return dynamic_cast<osgAnimation::MorphGeometry*>(&node) != nullptr; };
+    if (visitUntil(*result.node, isMorph))
+        result.warnings.push_back("MorphGeometry that no bone carries stays as it is");
     for (const Manager& each : scene.managers)
     {
         const std::set<std::string> left = targetsLeft(*each.manager, taken);

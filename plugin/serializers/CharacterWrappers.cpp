@@ -4,7 +4,6 @@
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/frame/PoseStatistics.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
-#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 #include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
 #include <osgGpuAnimation/nodes/GroundFeet.h>
@@ -26,31 +25,36 @@ namespace osgGpuAnimation::serializers
 namespace
 {
 
-void transferLeg(ValueStream& stream, GroundLeg& leg)
+/// A distance that may be infinite, at the end of a line.
+void transferDistance(ValueStream& stream, double& distance)
 {
-    stream.property("Leg").values(leg.constraint, leg.toe, leg.sole, leg.touchMarker, leg.leaveMarker).endLine();
+    bool isFinite = distance <= std::numeric_limits<double>::max();
+    stream.value(isFinite);
+    if (isFinite) stream.value(distance);
+    stream.endLine();
 }
 
 void transferFeet(ValueStream& stream, GroundFeet& feet)
 {
-    std::vector<GroundLeg> legs;
-    if (!stream.isReading()) legs = feet.getLegs();
+    std::vector<GroundLeg> legs = feet.getLegs();
     std::string ground = feet.getGroundName();
     auto mask = static_cast<std::size_t>(feet.getTraversalMask());
     double reach = feet.getReach(), tilt = feet.getMaxTilt(), lock = feet.getLockDistance(), weight = feet.getWeight();
     double distance = feet.getMaxDistance();
-    bool hasDistance = std::isfinite(distance);
     stream.begin();
-    stream.property("Ground").values(ground, mask, reach, tilt, lock, weight, hasDistance);
-    if (hasDistance) stream.value(distance);
-    stream.endLine();
-    stream.list("Legs", legs, [&](GroundLeg& leg) { transferLeg(stream, leg); });
+    transferDistance(stream.property("Ground").values(ground, mask, reach, tilt, lock, weight), distance);
+    stream.list("Legs", legs,
+                [&](GroundLeg& leg) {
+                    stream.property("Leg")
+                        .values(leg.constraint, leg.toe, leg.sole, leg.touchMarker, leg.leaveMarker)
+                        .endLine();
+                });
     stream.close();
     if (!stream.hasRead()) return;
     feet.setGroundName(ground);
     feet.setTraversalMask(static_cast<osg::Node::NodeMask>(mask));
     if (!feet.setReach(reach) || !feet.setMaxTilt(tilt) || !feet.setLockDistance(lock) || !feet.setWeight(weight) ||
-        (hasDistance && !feet.setMaxDistance(distance)))
+        !feet.setMaxDistance(distance))
         return stream.fail("feet: a number is out of range");
     stream.require("", feet.setLegs(std::move(legs)));
 }
@@ -90,26 +94,18 @@ void transferCollider(ValueStream& stream, SpringCollider& collider)
 
 void transferChains(ValueStream& stream, SpringBones& springs)
 {
-    std::vector<SpringChain> chains;
-    std::vector<SpringCollider> colliders;
-    if (!stream.isReading())
-    {
-        chains = springs.getChains();
-        colliders = springs.getColliders();
-    }
+    std::vector<SpringChain> chains = springs.getChains();
+    std::vector<SpringCollider> colliders = springs.getColliders();
     auto layer = springs.getLayer();
     double maxDistance = springs.getMaxDistance();
-    bool hasMaxDistance = springs.getMaxDistance() <= std::numeric_limits<double>::max();
     stream.begin();
-    stream.property("Layer").values(layer, hasMaxDistance);
-    if (hasMaxDistance) stream.value(maxDistance);
-    stream.endLine();
+    transferDistance(stream.property("Layer").value(layer), maxDistance);
     stream.list("SpringChains", chains, [&](SpringChain& chain) { transferChain(stream, chain); });
     stream.list("SpringColliders", colliders, [&](SpringCollider& collider) { transferCollider(stream, collider); });
     stream.close();
     if (!stream.hasRead()) return;
     springs.setLayer(layer);
-    if (hasMaxDistance) springs.setMaxDistance(maxDistance);
+    springs.setMaxDistance(maxDistance);
     stream.require("", springs.setChains(std::move(chains), std::move(colliders)));
 }
 

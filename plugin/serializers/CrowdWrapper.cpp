@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "serializers/StoredAnimation.h"
 
-#include "serializers/StoredLevels.h"
-
 #include <osgGpuAnimation/animation/detail/ControllerDetail.h>
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/mesh/lod/CharacterLevels.h>
-#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
 #include <osgGpuAnimation/nodes/Outfit.h>
 #include <osgGpuAnimation/scene/OsgMatrix.h>
@@ -26,8 +23,7 @@ template <typename Value, typename TransferValue, typename Set>
 void transferMap(ValueStream& stream, const char* name, const std::map<std::string, Value>& map,
                  TransferValue transferValue, Set set)
 {
-    std::vector<std::pair<std::string, Value>> pairs;
-    if (!stream.isReading()) pairs.assign(map.begin(), map.end());
+    std::vector<std::pair<std::string, Value>> pairs(map.begin(), map.end());
     const auto transferPair = [&](std::pair<std::string, Value>& pair)
     {
         stream.property("Of").value(pair.first);
@@ -67,7 +63,6 @@ void transferOutfit(ValueStream& stream, Outfit& outfit)
         stream, "JointScales", outfit.getJointScales(), [&](osg::Vec3& scale) { stream.floats(scale.ptr(), 3); },
         [&](const std::string& joint, const osg::Vec3& scale) { outfit.setJointScale(joint, scale); });
     std::vector<Outfit::Prop> props = outfit.getProps();
-    if (stream.isReading()) props.clear();
     stream.list("Props", props, [&](Outfit::Prop& prop) { transferProp(stream, prop); });
     for (const Outfit::Prop& prop : props)
         if (stream.hasRead()) outfit.addProp(prop.joint, prop.node, prop.toJoint);
@@ -189,10 +184,7 @@ void transferInstances(ValueStream& stream, AnimatedCrowd& crowd)
     }
     transferOutfits(stream, crowd);
     if (isWithLevels) transferCharacterLevels(stream, crowd);
-    if (stream.hasRead())
-    {
-        stream.require("a crowd: ", crowd.getMeshes().setPixelError(static_cast<float>(pixelError)));
-    }
+    if (stream.hasRead()) stream.require("a crowd: ", crowd.getMeshes().setPixelError(static_cast<float>(pixelError)));
     transferList(stream, crowd);
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "serializers/StoredAnimation.h"
-#include "serializers/StoredLevels.h"
 
 #include <osgGpuAnimation/looks/CharacterProgram.h>
 #include <osgGpuAnimation/looks/shading/Mipmaps.h>
@@ -9,7 +8,6 @@
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
-#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
 #include <osg/LOD>
 #include <osg/Notify>
@@ -45,8 +43,7 @@ void transferArray(ValueStream& stream, const char* name, osg::ref_ptr<Array>& a
 void transferMorphTargets(ValueStream& stream, SkinnedGeometry& mesh)
 {
     std::int32_t morph = mesh.getMorph(), entry = mesh.getMorphEntry();
-    std::vector<MorphTarget> targets;
-    if (!stream.isReading()) targets = mesh.getMorphTargets();
+    std::vector<MorphTarget> targets = mesh.getMorphTargets();
     stream.values(morph, entry).endLine();
     const auto transferTarget = [&](MorphTarget& target)
     {

@@ -66,11 +66,10 @@ void transferMorphs(ValueStream& stream, std::vector<MorphWeights>& morphs)
                 {
                     std::size_t weights = morph.defaults.size();
                     stream.property("Morph").values(morph.sourceNode, morph.name, weights);
-                    stream.floats(morph.defaults, weights).endLine();
+                    stream.numbers<float>(morph.defaults, weights).endLine();
                 });
 }
 
-constexpr std::size_t floatsATransform = sizeof(JointTransform) / sizeof(float);
 /// Of all compact clips of a set together; the default of the glTF reader's budget.
 constexpr std::size_t maxCompactBytes = std::size_t(2) << 30;
 

@@ -8,6 +8,7 @@
 #include <osgGpuAnimation/animation/Clip.h>
 #include <osgGpuAnimation/animation/Constraint.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
 #include <osg/Group>
 
@@ -61,11 +62,18 @@ void transferConstraints(ValueStream& stream, std::vector<Constraint>& constrain
 /// dropped, with a warning.
 void transferTargets(ValueStream& stream, AnimationController& controller);
 
-// The keyframes of compact clips in files of stored scenes. clip: has its times and numbers of tracks; reading adds its
-// data and compact tracks, which Clip::create() checks. bytesLeft: the memory for the data of all compact clips of a
-// set; reading subtracts from it, and beyond it the file is unreadable.
+constexpr std::size_t floatsATransform = sizeof(JointTransform) / sizeof(float);
 
-/// See CompactTracks: its tracks and records, the transforms of joints at rest, and the morph weights.
+/// The keyframes of a compact clip, see CompactTracks: its tracks and records, the transforms of joints at rest, and
+/// the morph weights. clip: has its times and numbers of tracks; reading adds its data and compact tracks, which
+/// Clip::create() checks. bytesLeft: the memory for the data of all compact clips of a set; reading subtracts from it,
+/// and beyond it the file is unreadable.
 void transferCompactKeyframes(ValueStream& stream, ClipParts& clip, std::size_t& bytesLeft);
+
+/// The levels of detail of a mesh, so that reading creates none. Levels with a fault (a warning names it) or of other
+/// vertices or primitives than the mesh's are dropped and created anew when they are needed.
+void transferLodLevels(ValueStream& stream, SkinnedGeometry& mesh);
+/// The same for a crowd's levels of the character as a whole, before the crowd's pixel error is set.
+void transferCharacterLevels(ValueStream& stream, AnimatedCrowd& crowd);
 
 } // namespace osgGpuAnimation::serializers

@@ -9,7 +9,6 @@ namespace osgGpuAnimation::serializers
 namespace
 {
 
-constexpr std::size_t floatsATransform = sizeof(JointTransform) / sizeof(float);
 constexpr std::size_t wordsATrack = 34; // integers, and the bits of floats
 static_assert(sizeof(CompactTracks::Track) == wordsATrack * sizeof(std::uint32_t), "a track has 32-bit numbers alone");
 

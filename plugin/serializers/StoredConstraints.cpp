@@ -17,7 +17,7 @@ void transferLookAt(ValueStream& stream, LookAt& look)
     stream.property("LookAt").values(look.name, joints);
     stream.items(look.joints, joints, [&](std::string& joint) { stream.value(joint); });
     stream.value(shares);
-    stream.floats(look.shares, shares);
+    stream.numbers<float>(look.shares, shares);
     stream.floats(&look.forward.x, 3).floats(&look.up.x, 3).floats(&look.offset.x, 3);
     stream.floats(&look.cone, 1).floats(&look.turnSpeed, 1).endLine();
 }
@@ -87,8 +87,7 @@ void transferConstraints(ValueStream& stream, std::vector<Constraint>& constrain
 
 void transferTargets(ValueStream& stream, AnimationController& controller)
 {
-    std::vector<StoredTarget> targets;
-    if (!stream.isReading()) targets = targetsOf(controller);
+    std::vector<StoredTarget> targets = targetsOf(controller);
     stream.list("Targets", targets,
                 [&](StoredTarget& stored)
                 {

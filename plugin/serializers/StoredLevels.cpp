@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "serializers/StoredLevels.h"
-
 #include "serializers/StoredAnimation.h"
 
 #include <osgGpuAnimation/mesh/detail/MeshDetail.h>
@@ -17,35 +15,32 @@ namespace osgGpuAnimation::serializers
 namespace
 {
 
-/// FNV-1a.
-class Checksum
-{
-public:
-    template <typename Number>
-    void add(const Number* values, std::size_t count)
-    {
-        const auto* bytes = reinterpret_cast<const unsigned char*>(values);
-        for (std::size_t i = 0; i < count * sizeof(Number); ++i)
-            _sum = (_sum ^ bytes[i]) * 16777619u;
-    }
-    void add(std::uint32_t value) { add(&value, 1); }
-    std::int32_t value() const { return static_cast<std::int32_t>(_sum); }
+constexpr std::uint32_t checksumStart = 2166136261u;
 
-private:
-    std::uint32_t _sum = 2166136261u;
-};
+/// FNV-1a.
+template <typename Number>
+void addTo(std::uint32_t& checksum, const Number* values, std::size_t count)
+{
+    const auto* bytes = reinterpret_cast<const unsigned char*>(values);
+    for (std::size_t i = 0; i < count * sizeof(Number); ++i)
+        checksum = (checksum ^ bytes[i]) * 16777619u;
+}
 
 /// Of what levels are made from: the vertices and the indices.
-void addMesh(Checksum& checksum, const osg::Geometry& mesh)
+void addMesh(std::uint32_t& checksum, const osg::Geometry& mesh)
 {
     if (const auto* vertices = dynamic_cast<const osg::Vec3Array*>(mesh.getVertexArray()))
-        checksum.add(vertices->asVector().data(), vertices->size());
+        addTo(checksum, vertices->asVector().data(), vertices->size());
     for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : mesh.getPrimitiveSetList())
     {
         const osg::DrawElements* elements = primitives ? primitives->getDrawElements() : nullptr;
-        checksum.add(primitives ? primitives->getMode() : 0);
+        const std::uint32_t mode = primitives ? primitives->getMode() : 0;
+        addTo(checksum, &mode, 1);
         for (unsigned int i = 0; elements && i < elements->getNumIndices(); ++i)
-            checksum.add(elements->index(i));
+        {
+            const std::uint32_t index = elements->index(i);
+            addTo(checksum, &index, 1);
+        }
     }
 }
 
@@ -64,13 +59,6 @@ void transferStep(ValueStream& stream, LodLevels::Step& step)
         transferIndices<std::uint32_t, osg::DrawElementsUInt>(stream, step.elements);
     else
         transferIndices<std::uint16_t, osg::DrawElementsUShort>(stream, step.elements);
-}
-
-Checksum checksumOf(const osg::Group& meshes)
-{
-    Checksum checksum;
-    forEachMesh(meshes, [&](const SkinnedGeometry& mesh) { addMesh(checksum, mesh); });
-    return checksum;
 }
 
 void transferMerged(ValueStream& stream, CharacterLevels::Merged& merged)
@@ -109,9 +97,9 @@ void warn(const osg::Object& object, const char* kind, const std::string& messag
 
 void transferLodLevels(ValueStream& stream, SkinnedGeometry& mesh)
 {
-    Checksum checksum;
+    std::uint32_t checksum = checksumStart;
     addMesh(checksum, mesh);
-    std::int32_t sum = checksum.value();
+    auto sum = static_cast<std::int32_t>(checksum);
     std::vector<LodLevels::Steps> levels;
     if (!stream.isReading())
         for (unsigned int i = 0; i < mesh.getNumPrimitiveSets(); ++i)
@@ -121,7 +109,8 @@ void transferLodLevels(ValueStream& stream, SkinnedGeometry& mesh)
                 [&](LodLevels::Steps& steps)
                 { stream.list("Steps", steps, [&](LodLevels::Step& step) { transferStep(stream, step); }); });
     if (!stream.hasRead()) return;
-    if (sum != checksum.value()) return warn(mesh, "mesh", "its vertices or primitives have changed");
+    if (sum != static_cast<std::int32_t>(checksum))
+        return warn(mesh, "mesh", "its vertices or primitives have changed");
     const Result<std::shared_ptr<const LodLevels>> restored = LodLevels::restored(mesh, std::move(levels));
     if (!restored) return warn(mesh, "mesh", restored.error().message);
     MeshDetail::setLevels(mesh, restored.value());
@@ -129,14 +118,15 @@ void transferLodLevels(ValueStream& stream, SkinnedGeometry& mesh)
 
 void transferCharacterLevels(ValueStream& stream, AnimatedCrowd& crowd)
 {
-    const Checksum checksum = checksumOf(CrowdDetail::drawnMeshes(crowd));
-    std::int32_t sum = checksum.value();
+    std::uint32_t checksum = checksumStart;
+    forEachMesh(CrowdDetail::drawnMeshes(crowd), [&](const SkinnedGeometry& mesh) { addMesh(checksum, mesh); });
+    auto sum = static_cast<std::int32_t>(checksum);
     std::vector<CharacterLevels::Merged> levels;
     if (!stream.isReading()) levels = CrowdDetail::levels(crowd)->merged();
     stream.property("Checksum").value(sum).endLine();
     stream.list("Merged", levels, [&](CharacterLevels::Merged& merged) { transferMerged(stream, merged); });
     if (!stream.hasRead()) return;
-    if (sum != checksum.value()) return warn(crowd, "crowd", "its meshes have changed");
+    if (sum != static_cast<std::int32_t>(checksum)) return warn(crowd, "crowd", "its meshes have changed");
     if (const auto fault = findFault(levels, crowd.getAnimationSet())) return warn(crowd, "crowd", *fault);
     const auto restored =
         CharacterLevels::restored(CrowdDetail::drawnMeshes(crowd), crowd.getAnimationSet(), std::move(levels));

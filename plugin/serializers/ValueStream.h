@@ -84,11 +84,12 @@ public:
     void begin(); ///< the same if the property's name is already transferred
     void close();
 
-    /// A property that holds all items. transferItem: void(Item&).
+    /// A property that holds all items; reading replaces them. transferItem: void(Item&).
     template <typename Item, typename Transfer>
     void list(const char* name, std::vector<Item>& items, Transfer transferItem)
     {
         const std::size_t count = open(name, items.size());
+        if (isReading()) items.clear();
         this->items(items, count, transferItem);
         close();
     }
@@ -116,11 +117,6 @@ public:
         }
         if (count % perItem != 0) fail(std::to_string(count) + " numbers, not " + std::to_string(perItem) + " an item");
         return *this;
-    }
-    template <typename Item>
-    ValueStream& floats(std::vector<Item>& items, std::size_t count)
-    {
-        return numbers<float>(items, count);
     }
     /// A property that holds numbers alone; the text formats break the line after each `perLine`.
     template <typename Number = float, typename Item>

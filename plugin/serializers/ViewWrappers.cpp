@@ -46,20 +46,6 @@ const char* const studioInstead = "surroundings are the studio";
 /// A value that the light cannot have, as of a cone beyond 90 degrees, costs that value alone.
 const char* const keepsOwn = "a stored light keeps its own";
 
-void transferPanorama(ValueStream& stream, Environment& environment)
-{
-    osg::ref_ptr<osg::Image> panorama = environment.getPanorama();
-    stream.image(panorama);
-    if (stream.hasRead()) report(studioInstead, environment.setPanorama(panorama));
-}
-
-void transferFaces(ValueStream& stream, Environment& environment)
-{
-    osg::ref_ptr<osg::TextureCubeMap> faces = environment.getFaces();
-    stream.object(faces);
-    if (stream.hasRead()) report(studioInstead, environment.setFaces(faces));
-}
-
 void transferSurroundings(ValueStream& stream, Environment& environment)
 {
     double intensity = static_cast<double>(environment.getIntensity());
@@ -79,11 +65,16 @@ void transferSurroundings(ValueStream& stream, Environment& environment)
         environment.setToneMapping(isToneMapped);
     }
     if (source == Source::Studio) return;
+    osg::ref_ptr<osg::Image> panorama = environment.getPanorama();
+    osg::ref_ptr<osg::TextureCubeMap> faces = environment.getFaces();
     stream.open("Picture", 1);
     if (source == Source::Panorama)
-        transferPanorama(stream, environment);
+        stream.image(panorama);
     else
-        transferFaces(stream, environment);
+        stream.object(faces);
+    if (stream.hasRead())
+        report(studioInstead,
+               source == Source::Panorama ? environment.setPanorama(panorama) : environment.setFaces(faces));
     stream.close();
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tool/ConvertCommand.h"
+#include "tool/Commands.h"
 
 #include "gltf/Export.h"
 #include "gltf/file/ProgressLine.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tool/InspectCommand.h"
+#include "tool/Commands.h"
 
 #include "gltf/file/Elements.h"
 #include "gltf/file/ProgressLine.h"
@@ -136,17 +136,16 @@ ordered_json reportClips(const gltf::ImportedModel& model)
 /// bytes: on the GPU. snapshotBytes: the size of uncompressed keyframes, 48 bytes per joint.
 ordered_json reportKeyframes(const gltf::ImportedModel& model)
 {
-    ordered_json keyframes = {{"count", 0}, {"bytes", 0}, {"snapshotBytes", 0}};
-    if (!model.set) return keyframes;
+    if (!model.set) return {{"count", 0}, {"bytes", 0}, {"snapshotBytes", 0}};
     std::size_t count = 0, transforms = 0;
     for (const Clip& clip : model.set->clips())
     {
         count += clip.keyframeCount();
         transforms += clip.data().size();
     }
-    keyframes = {{"count", count},
-                 {"bytes", PackedKeyframes(*model.set).byteSize()},
-                 {"snapshotBytes", transforms * sizeof(JointTransform)}};
+    ordered_json keyframes = {{"count", count},
+                              {"bytes", PackedKeyframes(*model.set).byteSize()},
+                              {"snapshotBytes", transforms * sizeof(JointTransform)}};
     if (!model.compacted) return keyframes;
     const CompactedCharacter& compacted = *model.compacted;
     keyframes["error"] =
@@ -236,14 +235,7 @@ ordered_json reportCameras(const gltf::ImportedModel& model)
 
 std::string line(const std::string& label, const std::string& text)
 {
-    std::ostringstream out;
-    out << std::left << std::setw(17) << label << text << "\n";
-    return out.str();
-}
-
-std::string number(const ordered_json& value)
-{
-    return value.dump();
+    return label + std::string(17 - label.size(), ' ') + text + "\n";
 }
 
 /// For people: three digits are enough.
@@ -337,7 +329,7 @@ std::string materialLines(const ordered_json& materials)
         {
             const ordered_json& size = map["size"];
             text += "; " + map["map"].get<std::string>() + ' ' +
-                    (size.is_null() ? "(no picture)" : number(size[0]) + "x" + number(size[1]));
+                    (size.is_null() ? "(no picture)" : size[0].dump() + "x" + size[1].dump());
         }
         text += "\n";
     }
@@ -350,10 +342,10 @@ std::string lightsText(const ordered_json& lights)
     for (const ordered_json& light : lights)
         if (!light["number"].is_null())
             text += (text.empty() ? ": " : ", ") + nameOr(light["name"]) + " (" + light["type"].get<std::string>() +
-                    ", GL_LIGHT" + number(light["number"]) + ")";
+                    ", GL_LIGHT" + light["number"].dump() + ")";
     const auto isLeftOut = [](const ordered_json& light) { return light["number"].is_null(); };
     const auto leftOut = std::count_if(lights.begin(), lights.end(), isLeftOut);
-    return number(lights.size()) + text + (leftOut == 0 ? "" : "; " + number(leftOut) + " left out");
+    return std::to_string(lights.size()) + text + (leftOut == 0 ? "" : "; " + std::to_string(leftOut) + " left out");
 }
 
 std::string camerasText(const ordered_json& cameras)
@@ -361,7 +353,7 @@ std::string camerasText(const ordered_json& cameras)
     std::string text;
     for (const ordered_json& camera : cameras)
         text += (text.empty() ? ": " : ", ") + nameOr(camera["name"]) + " (" + camera["type"].get<std::string>() + ")";
-    return number(cameras.size()) + text;
+    return std::to_string(cameras.size()) + text;
 }
 
 std::string clipLines(const ordered_json& clips)
@@ -415,36 +407,34 @@ std::string reportText(const ordered_json& report)
     const ordered_json& bytes = report["gpuBytes"];
     std::string skins;
     for (const ordered_json& skin : report["skins"])
-        skins += (skins.empty() ? "" : ", ") + nameOr(skin["name"]) + " (" + number(skin["joints"]) + " joints)";
+        skins += (skins.empty() ? "" : ", ") + nameOr(skin["name"]) + " (" + skin["joints"].dump() + " joints)";
 
     std::string text = line("file", report["file"].get<std::string>());
     const std::string generator = report["generator"];
     if (!generator.empty()) text += line("generator", generator);
-    text += line("joints", number(joints["count"]) + ", " + number(joints["depth"]) +
-                               " deep; roots: " + listed(joints["roots"])) +
+    text += line("joints",
+                 joints["count"].dump() + ", " + joints["depth"].dump() + " deep; roots: " + listed(joints["roots"])) +
             jointLines(joints["list"]);
-    text += line("skins", number(report["skins"].size()) + (skins.empty() ? "" : ": " + skins));
-    text += line("palette entries", number(report["paletteEntries"]));
+    text += line("skins", std::to_string(report["skins"].size()) + (skins.empty() ? "" : ": " + skins));
+    text += line("palette entries", report["paletteEntries"].dump());
     text += line("bounds", boundsText(report["bounds"]) + " in the rest pose");
-    text += line("clips", number(report["clips"].size())) + clipLines(report["clips"]);
+    text += line("clips", std::to_string(report["clips"].size())) + clipLines(report["clips"]);
     const ordered_json& keyframes = report["keyframes"];
-    text += line("keyframes", number(keyframes["count"]) + ", " + number(keyframes["bytes"]) +
-                                  " bytes on the GPU (snapshots: " + number(keyframes["snapshotBytes"]) + ")" +
+    text += line("keyframes", keyframes["count"].dump() + ", " + keyframes["bytes"].dump() +
+                                  " bytes on the GPU (snapshots: " + keyframes["snapshotBytes"].dump() + ")" +
                                   errorOf(keyframes));
-    text +=
-        line("meshes", number(meshes["count"]) + ", " + number(meshes["primitives"]) + " primitives (" +
-                           number(meshes["skinned"]) + " skinned, " + number(meshes["rigid"]) + " rigid on joints, " +
-                           number(meshes["still"]) + " still), " + number(meshes["vertices"]) + " vertices, " +
-                           number(meshes["morphTargets"]) + " morph targets");
-    text += line("materials", number(report["materials"].size())) + materialLines(report["materials"]);
+    text += line("meshes", meshes["count"].dump() + ", " + meshes["primitives"].dump() + " primitives (" +
+                               meshes["skinned"].dump() + " skinned, " + meshes["rigid"].dump() + " rigid on joints, " +
+                               meshes["still"].dump() + " still), " + meshes["vertices"].dump() + " vertices, " +
+                               meshes["morphTargets"].dump() + " morph targets");
+    text += line("materials", std::to_string(report["materials"].size())) + materialLines(report["materials"]);
     text += line("variants", listed(report["variants"]));
     text += line("lights", lightsText(report["lights"]));
     text += line("cameras", camerasText(report["cameras"]));
     text += line("extensions", listed(report["extensions"]));
-    text +=
-        line("bytes on the GPU", number(bytes["total"]) + " (animation " + number(bytes["animation"]) + ", meshes " +
-                                     number(bytes["meshes"]) + ", textures " + number(bytes["textures"]) + ")");
-    text += line("warnings", number(report["warnings"].size()));
+    text += line("bytes on the GPU", bytes["total"].dump() + " (animation " + bytes["animation"].dump() + ", meshes " +
+                                         bytes["meshes"].dump() + ", textures " + bytes["textures"].dump() + ")");
+    text += line("warnings", std::to_string(report["warnings"].size()));
     for (const char* kind : {"warnings", "notes"})
         for (const ordered_json& message : report[kind])
             text += "  " + message.get<std::string>() + "\n";

@@ -131,14 +131,12 @@ public:
     mutable osg::ref_ptr<osg::Image> image;
 };
 
-PictureViewer::PictureViewer() : _reader(new ReadPixels)
-{
-    setSurroundings(new Environment);
-}
+PictureViewer::PictureViewer() : _reader(new ReadPixels) {}
 
 PictureViewer::~PictureViewer() = default;
 
-Result<std::unique_ptr<PictureViewer>> PictureViewer::create(int width, int height, Look look)
+Result<std::unique_ptr<PictureViewer>> PictureViewer::create(int width, int height, Look look,
+                                                             const osg::ref_ptr<Environment>& surroundings)
 {
     osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits;
     traits->width = width;
@@ -148,6 +146,8 @@ Result<std::unique_ptr<PictureViewer>> PictureViewer::create(int width, int heig
 
     std::unique_ptr<PictureViewer> made(new PictureViewer);
     made->_look = look;
+    made->_surroundings = surroundings;
+    surroundings->setToneMapping(true);
     osgViewer::Viewer& viewer = made->_viewer;
     viewer.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
     viewer.setRealizeOperation(new ForgetMissingExtensions);
@@ -165,12 +165,6 @@ Result<std::unique_ptr<PictureViewer>> PictureViewer::create(int width, int heig
     made->_reader->texture = picture;
     camera->setFinalDrawCallback(made->_reader);
     return made;
-}
-
-void PictureViewer::setSurroundings(const osg::ref_ptr<Environment>& surroundings)
-{
-    _surroundings = surroundings;
-    _surroundings->setToneMapping(true);
 }
 
 void PictureViewer::show(osg::Node* scene, const std::vector<osg::Vec3d>& points,

@@ -29,18 +29,17 @@ enum class Look
 /// A viewer without a display whose frames become images: soft background, four samples per pixel if the driver
 /// supports them.
 ///
-///     Result<std::unique_ptr<PictureViewer>> viewer = PictureViewer::create(800, 600, Look::Studio);
+///     Result<std::unique_ptr<PictureViewer>> viewer = PictureViewer::create(800, 600, Look::Studio, new Environment);
 ///     viewer.value()->show(scene, points);
 ///     osg::ref_ptr<osg::Image> image = viewer.value()->draw(0.5);
 class PictureViewer
 {
 public:
-    /// Error: no graphics context, or none of that size, can be created.
-    static Result<std::unique_ptr<PictureViewer>> create(int width, int height, Look look);
+    /// surroundings: of Look::Studio. Error: no graphics context, or none of that size, can be created.
+    static Result<std::unique_ptr<PictureViewer>> create(int width, int height, Look look,
+                                                         const osg::ref_ptr<Environment>& surroundings);
     ~PictureViewer();
 
-    /// Surroundings in place of the studio. Call it before show().
-    void setSurroundings(const osg::ref_ptr<Environment>& surroundings);
     /// Places the camera so that it sees all these points, from that direction or as raisedStandpoint() does.
     void show(osg::Node* scene, const std::vector<osg::Vec3d>& points, const std::optional<ViewDirection>& from);
     /// Moves the camera around the vertical line through the middle of these points, away from its first place:

@@ -7,19 +7,12 @@
 
 #include <glm/vec3.hpp>
 
-#include <memory>
+#include <functional>
 #include <string>
 #include <vector>
 
 namespace osgGpuAnimation::tool
 {
-
-/// A palette entry that overrides the computed one: a block of morph weights.
-struct FixedEntry
-{
-    std::size_t entry = 0;
-    AffineMatrix value;
-};
 
 /// A computed pose of a model's character.
 struct EvaluatedPose
@@ -30,26 +23,21 @@ struct EvaluatedPose
     std::vector<std::vector<glm::dvec3>> positions;
 };
 
-/// Computes poses, on the CPU or on the GPU.
-class PoseEvaluator
+/// Computes the poses of instructions for the model's set.
+struct PoseEvaluator
 {
-public:
-    virtual ~PoseEvaluator() = default;
-
-    virtual std::string name() const = 0;
-    /// instruction: for the model's set. Fixed entries have indices below its palette size.
-    virtual Result<EvaluatedPose> evaluate(const PoseInstruction& instruction,
-                                           const std::vector<FixedEntry>& fixedEntries) = 0;
+    std::string name;
+    std::function<Result<EvaluatedPose>(const PoseInstruction&)> evaluate;
 };
 
 // The model must outlive the evaluator; it has a character.
 
 /// With the CPU twins of the shaders: Pose for the palette, SkinnedGeometry::computePositions for the vertices.
-std::unique_ptr<PoseEvaluator> cpuPoseEvaluator(const gltf::ImportedModel& model);
+PoseEvaluator cpuPoseEvaluator(const gltf::ImportedModel& model);
 
 /// With the GPU's pipeline, in a context of its own: reads matrices back from the palette buffer and captures
 /// positions, by transform feedback, from the function of skin.glsl that draws characters. Error: no graphics context
 /// can be created, or it lacks a feature that the pipeline needs.
-Result<std::unique_ptr<PoseEvaluator>> gpuPoseEvaluator(const gltf::ImportedModel& model);
+Result<PoseEvaluator> gpuPoseEvaluator(const gltf::ImportedModel& model);
 
 } // namespace osgGpuAnimation::tool

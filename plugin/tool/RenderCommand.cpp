@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "tool/RenderCommand.h"
+#include "tool/Commands.h"
 
 #include "crowd/CrowdGrid.h"
 #include "gltf/export/PictureWriter.h"
 #include "gltf/file/ProgressLine.h"
 #include "gltf/file/SavedFile.h"
-#include "tool/ModelFile.h"
 #include "tool/PoseEvaluator.h"
 
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
@@ -19,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <iomanip>
 #include <iostream>
 #include <sstream>
@@ -52,10 +52,10 @@ void addStill(const gltf::ImportedModel& model, std::vector<osg::Vec3d>& points)
 }
 
 /// The vertices of the character in its current pose.
-void addMoving(const gltf::ImportedModel& model, PoseEvaluator& evaluator, std::vector<osg::Vec3d>& points)
+void addMoving(const gltf::ImportedModel& model, const PoseEvaluator& evaluator, std::vector<osg::Vec3d>& points)
 {
     const osg::MatrixList places = model.character->getWorldMatrices();
-    const Result<EvaluatedPose> pose = evaluator.evaluate(model.character->getController().instruction(), {});
+    const Result<EvaluatedPose> pose = evaluator.evaluate(model.character->getController().instruction());
     if (!pose || places.empty()) return;
     for (const std::vector<glm::dvec3>& positions : pose.value().positions)
         for (const glm::dvec3& position : positions)
@@ -69,12 +69,12 @@ std::vector<osg::Vec3d> pointsOf(const gltf::ImportedModel& model, const std::ve
     std::vector<osg::Vec3d> points;
     addStill(model, points);
     if (!model.character) return points;
-    const std::unique_ptr<PoseEvaluator> evaluator = cpuPoseEvaluator(model);
+    const PoseEvaluator evaluator = cpuPoseEvaluator(model);
     const std::size_t looks = std::min<std::size_t>(times.size(), 64);
     for (std::size_t look = 0; look < looks; ++look)
     {
         showTime(model.character->getController(), times[look * times.size() / looks]);
-        addMoving(model, *evaluator, points);
+        addMoving(model, evaluator, points);
     }
     return points;
 }
@@ -137,6 +137,73 @@ std::vector<osg::Vec3d> turned(const std::vector<osg::Vec3d>& points)
     return ends;
 }
 
+/// Seconds, by picture.
+std::vector<double> timesOf(const RenderCommand& command)
+{
+    std::vector<double> times(static_cast<std::size_t>(command.turntable.value_or(0)), command.time);
+    for (int frame = 0; !command.turntable && frame < command.frames.value_or(1); ++frame)
+        times.push_back(command.time + frame / command.framesPerSecond);
+    return times;
+}
+
+/// points: of the scene, at all times. Error: there are none.
+Result<void> show(const RenderCommand& command, PictureViewer& viewer, osg::Node& scene,
+                  const std::vector<osg::Vec3d>& points, const std::optional<ViewDirection>& from)
+{
+    if (points.empty())
+        return Error{command.file + ": there is nothing to draw; a file of clips needs a model, see --clips"};
+    viewer.show(&scene, command.turntable ? turned(points) : points, from);
+    return {};
+}
+
+/// simulationTime: of the viewer, from a picture's time; called before the picture is drawn.
+Result<void> drawPictures(const RenderCommand& command, PictureViewer& viewer,
+                          const std::function<double(double)>& simulationTime)
+{
+    gltf::ProgressLine progress("drawing");
+    const std::vector<double> times = timesOf(command);
+    for (std::size_t picture = 0; picture < times.size(); ++picture)
+    {
+        progress.set(picture, times.size());
+        if (command.turntable) viewer.turn(360.0 * static_cast<double>(picture) / *command.turntable);
+        const osg::ref_ptr<osg::Image> image = viewer.draw(simulationTime(times[picture]));
+        const std::string name =
+            command.frames || command.turntable ? numbered(command.output, picture + 1) : command.output;
+        if (const Result<void> written = writePicture(image, command.file, name); !written) return written;
+    }
+    return {};
+}
+
+Result<void> drawModel(const RenderCommand& command, PictureViewer& viewer, const gltf::ImportedModel& model)
+{
+    const std::vector<double> posed = command.turntable ? std::vector<double>{command.time} : timesOf(command);
+    if (const Result<void> shown = show(command, viewer, *model.root, pointsOf(model, posed), command.view); !shown)
+        return shown;
+    if (model.character) waitForLevels(model.character->getMeshes());
+    if (model.startCamera) viewer.lookThrough(*model.startCamera);
+    return drawPictures(command, viewer,
+                        [&](double seconds)
+                        {
+                            if (model.character) showTime(model.character->getController(), seconds);
+                            return seconds - command.time;
+                        });
+}
+
+Result<void> drawCrowd(const RenderCommand& command, PictureViewer& viewer, osg::Node& model,
+                       const crowd::CrowdOptions& grid)
+{
+    const Result<osg::ref_ptr<AnimatedCrowd>> crowd = crowd::makeCrowd(model, grid);
+    if (!crowd) return Error{grid.modelFile + ": " + crowd.error().message};
+    osg::ref_ptr<osg::Group> scene = new osg::Group;
+    scene->addChild(crowd.value());
+    const std::vector<osg::Vec3d> points = osgGpuAnimation::pointsOf(*scene);
+    const ViewDirection from = command.view.value_or(fillingDirection(points));
+    if (const Result<void> shown = show(command, viewer, *scene, points, from); !shown) return shown;
+    waitForLevels(crowd.value()->getMeshes());
+    viewer.draw(0.0); // the time from which the clips run
+    return drawPictures(command, viewer, [](double seconds) { return seconds; });
+}
+
 } // namespace
 
 Result<void> RenderCommand::run() const
@@ -169,70 +236,10 @@ Result<void> RenderCommand::run() const
     const Result<osg::ref_ptr<Environment>> surroundings =
         environment.empty() ? osg::ref_ptr<Environment>(new Environment) : readSurroundings(environment);
     if (!surroundings) return surroundings.error();
-    Result<std::unique_ptr<PictureViewer>> viewer = PictureViewer::create(width, height, look);
+    Result<std::unique_ptr<PictureViewer>> viewer = PictureViewer::create(width, height, look, surroundings.value());
     if (!viewer) return Error{file + ": " + viewer.error().message};
-    viewer.value()->setSurroundings(surroundings.value());
-    return isCrowd ? drawCrowd(*viewer.value(), *model.value().root, grid) : drawModel(*viewer.value(), model.value());
-}
-
-std::vector<double> RenderCommand::times() const
-{
-    std::vector<double> times(static_cast<std::size_t>(turntable.value_or(0)), time);
-    for (int frame = 0; !turntable && frame < frames.value_or(1); ++frame)
-        times.push_back(time + frame / framesPerSecond);
-    return times;
-}
-
-Result<void> RenderCommand::show(PictureViewer& viewer, osg::Node& scene, const std::vector<osg::Vec3d>& points,
-                                 const std::optional<ViewDirection>& from) const
-{
-    if (points.empty()) return Error{file + ": there is nothing to draw; a file of clips needs a model, see --clips"};
-    viewer.show(&scene, turntable ? turned(points) : points, from);
-    return {};
-}
-
-Result<void> RenderCommand::drawPictures(PictureViewer& viewer,
-                                         const std::function<double(double)>& simulationTime) const
-{
-    gltf::ProgressLine progress("drawing");
-    const std::vector<double> times = this->times();
-    for (std::size_t picture = 0; picture < times.size(); ++picture)
-    {
-        progress.set(picture, times.size());
-        if (turntable) viewer.turn(360.0 * static_cast<double>(picture) / *turntable);
-        const osg::ref_ptr<osg::Image> image = viewer.draw(simulationTime(times[picture]));
-        const std::string name = frames || turntable ? numbered(output, picture + 1) : output;
-        if (const Result<void> written = writePicture(image, file, name); !written) return written;
-    }
-    return {};
-}
-
-Result<void> RenderCommand::drawModel(PictureViewer& viewer, const gltf::ImportedModel& model) const
-{
-    const std::vector<double> posed = turntable ? std::vector<double>{time} : times();
-    if (const Result<void> shown = show(viewer, *model.root, pointsOf(model, posed), view); !shown) return shown;
-    if (model.character) waitForLevels(model.character->getMeshes());
-    if (model.startCamera) viewer.lookThrough(*model.startCamera);
-    return drawPictures(viewer,
-                        [&](double seconds)
-                        {
-                            if (model.character) showTime(model.character->getController(), seconds);
-                            return seconds - time;
-                        });
-}
-
-Result<void> RenderCommand::drawCrowd(PictureViewer& viewer, osg::Node& model, const crowd::CrowdOptions& grid) const
-{
-    const Result<osg::ref_ptr<AnimatedCrowd>> crowd = crowd::makeCrowd(model, grid);
-    if (!crowd) return Error{grid.modelFile + ": " + crowd.error().message};
-    osg::ref_ptr<osg::Group> scene = new osg::Group;
-    scene->addChild(crowd.value());
-    const std::vector<osg::Vec3d> points = osgGpuAnimation::pointsOf(*scene);
-    if (const Result<void> shown = show(viewer, *scene, points, view.value_or(fillingDirection(points))); !shown)
-        return shown;
-    waitForLevels(crowd.value()->getMeshes());
-    viewer.draw(0.0); // the time from which the clips run
-    return drawPictures(viewer, [](double seconds) { return seconds; });
+    return isCrowd ? drawCrowd(*this, *viewer.value(), *model.value().root, grid)
+                   : drawModel(*this, *viewer.value(), model.value());
 }
 
 } // namespace osgGpuAnimation::tool

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "assimp/ConversionProcess.h"
 #include "assimp/AssimpFile.h"
-#include "assimp/ConversionFrames.h"
+#include "assimp/ConversionOutput.h"
 #include "assimp/SmallFbx.h"
 #include "support/Results.h"
 #include "support/ScratchFolder.h"
@@ -83,8 +83,10 @@ TEST_F(ConversionProcessTest, whatEndsTheHelperIsAnErrorWithASentence)
         {"exit 3", "of memory"},
         {"exit 0", "ended without a result"},
         {"echo 'cannot load libassimp.so' >&2; exit 127", "ended without a result: cannot load libassimp.so"},
-        {"printf 'g\\377\\377\\0\\0\\0\\0\\0\\0glTF'", "ended without a result"},
-        {"printf 'x\\0\\0\\0\\0\\0\\0\\0\\0'", "ended without a result"},
+        {R"(printf '{"warnings":[],"notes":[],"bytes":65535}\nglTF')", "ended without a result"},
+        {R"(printf '{"warnings":1,"notes":[],"bytes":4}\nglTF')", "ended without a result"},
+        {R"(printf '{"warnings":[],"notes":[],"error":{}}\n')", "ended without a result"},
+        {"printf 'x\\0\\0\\0\\n'", "ended without a result"},
         {"head -c 100000 /dev/zero >&2; kill -ABRT $$", "Assimp ended with signal 6"},
     };
     for (const auto& each : cases)

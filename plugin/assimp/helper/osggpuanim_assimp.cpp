@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "assimp/AssimpFile.h"
-#include "assimp/ConversionFrames.h"
+#include "assimp/ConversionOutput.h"
+
+#include <nlohmann/json.hpp>
 
 #include <cstdio>
 #include <cstdlib>
@@ -37,14 +39,9 @@ bool write(const std::string& bytes, std::FILE* out)
     return std::fwrite(bytes.data(), 1, bytes.size(), out) == bytes.size();
 }
 
-bool writeFrame(std::FILE* out, assimp::FrameKind kind, const std::string& content)
-{
-    return write(assimp::frameHeader(kind, content.size()), out) && write(content, out);
-}
-
 } // namespace
 
-/// Converts a file to GLB for readAsGlbApart(), which starts it. See ConversionFrames.h.
+/// Converts a file to GLB for readAsGlbApart(), which starts it. See ConversionOutput.h.
 int main(int count, char** arguments)
 {
     if (count != 7)
@@ -57,7 +54,7 @@ int main(int count, char** arguments)
 #ifdef SYS_close_range
     syscall(SYS_close_range, STDERR_FILENO + 1, ~0u, 0); // files and devices of the host
 #endif
-    std::FILE* const frames = fdopen(dup(STDOUT_FILENO), "wb");
+    std::FILE* const output = fdopen(dup(STDOUT_FILENO), "wb");
     dup2(STDERR_FILENO, STDOUT_FILENO); // what libraries print
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_FSIZE, 0);
@@ -72,13 +69,13 @@ int main(int count, char** arguments)
     gltf::Messages messages;
     gltf::Report report(messages);
     const Result<std::string> glb = assimp::readAsGlb(arguments[6], options, report);
-    bool isWritten = frames != nullptr;
-    for (const std::string& each : messages.warnings)
-        isWritten = isWritten && writeFrame(frames, assimp::FrameKind::Warning, each);
-    for (const std::string& each : messages.notes)
-        isWritten = isWritten && writeFrame(frames, assimp::FrameKind::Note, each);
-    isWritten = isWritten && (glb ? writeFrame(frames, assimp::FrameKind::Glb, glb.value())
-                                  : writeFrame(frames, assimp::FrameKind::Error, glb.error().message));
-    isWritten = isWritten && std::fflush(frames) == 0;
+    nlohmann::json head{{"warnings", messages.warnings}, {"notes", messages.notes}};
+    if (glb)
+        head["bytes"] = glb.value().size();
+    else
+        head["error"] = glb.error().message;
+    const std::string line = head.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
+    const bool isWritten =
+        output && write(line, output) && (!glb || write(glb.value(), output)) && std::fflush(output) == 0;
     _exit(isWritten ? 0 : 1); // what the libraries would tidy up belongs to no one
 }

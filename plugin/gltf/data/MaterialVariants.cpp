@@ -56,12 +56,13 @@ std::vector<std::string> variantNames(const tinygltf::Model& model)
     return names;
 }
 
-void forEachVariantMaterial(const tinygltf::Primitive& primitive, const std::function<void(int)>& visit)
+void forEachVariantMaterial(const tinygltf::Primitive& primitive,
+                            const std::function<void(int material, const tinygltf::Value& variants)>& visit)
 {
     const tinygltf::Value& mappings = memberOf(primitive.extensions, "mappings");
     for (std::size_t i = 0; i < mappings.ArrayLen(); ++i)
         if (const tinygltf::Value& mapping = mappings.Get(static_cast<int>(i)); mapping.Has("material"))
-            visit(mapping.Get("material").GetNumberAsInt());
+            visit(mapping.Get("material").GetNumberAsInt(), mapping.Get("variants"));
 }
 
 PrimitiveMaterials materialsOf(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
@@ -72,13 +73,8 @@ PrimitiveMaterials materialsOf(const tinygltf::Model& model, const tinygltf::Pri
     { return add(elementOf(model.materials, index), maps.of(index), materials); };
     materials.own = primitive.material;
     if (materials.own >= 0) addMaterial(materials.own);
-    const tinygltf::Value& mappings = memberOf(primitive.extensions, "mappings");
-    for (std::size_t i = 0; i < mappings.ArrayLen(); ++i)
+    const auto addVariants = [&](int material, const tinygltf::Value& variants)
     {
-        const tinygltf::Value& mapping = mappings.Get(static_cast<int>(i));
-        if (!mapping.Has("material")) continue;
-        const int material = mapping.Get("material").GetNumberAsInt();
-        const tinygltf::Value& variants = mapping.Get("variants");
         const bool fits = addMaterial(material);
         for (std::size_t v = 0; v < variants.ArrayLen(); ++v)
         {
@@ -88,7 +84,8 @@ PrimitiveMaterials materialsOf(const tinygltf::Model& model, const tinygltf::Pri
             else
                 materials.withoutCoordinates.push_back(variant);
         }
-    }
+    };
+    forEachVariantMaterial(primitive, addVariants);
     return materials;
 }
 

@@ -186,12 +186,6 @@ bool isFloat(const tinygltf::Accessor& accessor)
     return accessor.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT;
 }
 
-/// True for floats and for the normalized small integers that rotations and weights may have.
-bool isFloatOrNormalized(const tinygltf::Accessor& accessor)
-{
-    return isFloat(accessor) || (accessor.normalized && componentBytes(accessor.componentType) <= 2);
-}
-
 std::string in(int accessor)
 {
     return " in " + elementName("accessors", accessor);
@@ -205,14 +199,10 @@ bool isCubic(const tinygltf::AnimationSampler& sampler)
 /// Empty if an output may drive the path, else the expected format.
 std::string wrongOutputFormat(const tinygltf::Accessor& output, std::string_view path)
 {
-    if (path == "rotation")
-        return output.type == TINYGLTF_TYPE_VEC4 && isFloatOrNormalized(output)
-                   ? ""
-                   : "VEC4 of float or normalized byte, unsigned byte, short or unsigned short";
-    if (path == "weights")
-        return output.type == TINYGLTF_TYPE_SCALAR && isFloatOrNormalized(output)
-                   ? ""
-                   : "SCALAR of float or normalized byte, unsigned byte, short or unsigned short";
+    static const std::string small = " of float or normalized byte, unsigned byte, short or unsigned short";
+    const bool isSmall = isFloat(output) || (output.normalized && componentBytes(output.componentType) <= 2);
+    if (path == "rotation") return output.type == TINYGLTF_TYPE_VEC4 && isSmall ? "" : "VEC4" + small;
+    if (path == "weights") return output.type == TINYGLTF_TYPE_SCALAR && isSmall ? "" : "SCALAR" + small;
     return output.type == TINYGLTF_TYPE_VEC3 && isFloat(output) ? "" : "VEC3 of float";
 }
 

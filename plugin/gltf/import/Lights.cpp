@@ -7,9 +7,8 @@
 #include <osg/Math>
 
 #include <algorithm>
+#include <numeric>
 #include <string>
-#include <utility>
-
 namespace osgGpuAnimation::gltf
 {
 
@@ -30,16 +29,13 @@ Result<osg::ref_ptr<PunctualLight>> makeLight(const tinygltf::Light& light, unsi
 {
     osg::ref_ptr<PunctualLight> made = new PunctualLight(kindOf(light), number);
     const osg::Vec3 color(osg::Vec3d(light.color[0], light.color[1], light.color[2]));
-    const Result<void> set = made->setIntensity(color, static_cast<float>(light.intensity));
-    if (!set) return set.error();
-    const Result<void> ends = made->setRange(static_cast<float>(light.range));
-    if (!ends) return ends.error();
-    if (light.type != "spot") return made;
+    Result<void> set = made->setIntensity(color, static_cast<float>(light.intensity));
+    if (set) set = made->setRange(static_cast<float>(light.range));
     // Rounded to floats, pi / 2 is more than 90 degrees, and two angles may be equal.
     const float outer = std::min(90.0f, static_cast<float>(osg::RadiansToDegrees(light.spot.outerConeAngle)));
     const float inner = static_cast<float>(osg::RadiansToDegrees(light.spot.innerConeAngle));
-    const Result<void> cone = made->setCone(std::min(inner, outer * 0.9999f), outer);
-    if (!cone) return cone.error();
+    if (set && light.type == "spot") set = made->setCone(std::min(inner, outer * 0.9999f), outer);
+    if (!set) return set.error();
     return made;
 }
 
@@ -67,20 +63,18 @@ double distanceOf(const tinygltf::Model& model, const NodeTree& tree, const Impo
 std::vector<std::size_t> nearest(const tinygltf::Model& model, const NodeTree& tree, const osg::Vec3d& middle,
                                  const std::vector<ImportedLight>& lights, Report& report)
 {
-    std::vector<std::pair<double, std::size_t>> byDistance;
-    for (std::size_t i = 0; i < lights.size(); ++i)
-        byDistance.emplace_back(distanceOf(model, tree, lights[i], middle), i);
-    if (lights.size() > maxLights)
-    {
-        std::sort(byDistance.begin(), byDistance.end());
-        byDistance.resize(maxLights);
-        report.warn("nodes: the scene has " + std::to_string(lights.size()) + " lights, OpenGL has " +
-                    std::to_string(maxLights) + " beside the viewer's; the nearest to its middle are shown");
-    }
-    std::vector<std::size_t> kept;
-    for (const auto& [distance, index] : byDistance)
-        kept.push_back(index);
+    std::vector<std::size_t> kept(lights.size());
+    std::iota(kept.begin(), kept.end(), std::size_t(0));
+    if (lights.size() <= maxLights) return kept;
+    std::vector<double> distances;
+    for (const ImportedLight& light : lights)
+        distances.push_back(distanceOf(model, tree, light, middle));
+    std::stable_sort(kept.begin(), kept.end(),
+                     [&](std::size_t a, std::size_t b) { return distances[a] < distances[b]; });
+    kept.resize(maxLights);
     std::sort(kept.begin(), kept.end());
+    report.warn("nodes: the scene has " + std::to_string(lights.size()) + " lights, OpenGL has " +
+                std::to_string(maxLights) + " beside the viewer's; the nearest to its middle are shown");
     return kept;
 }
 

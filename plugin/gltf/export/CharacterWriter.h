@@ -15,8 +15,8 @@
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <vector>
-
 namespace osgGpuAnimation::gltf
 {
 
@@ -66,6 +66,8 @@ private:
         std::size_t targets = 0;
         bool isHidden = false;
         std::vector<CharacterMesh> meshes;
+
+        auto key() const { return std::tie(name, nodeName, joint, skin, morph, targets, isHidden); }
     };
 
     int skinOf(const AnimationSet& set, const SkinnedGeometry& mesh);

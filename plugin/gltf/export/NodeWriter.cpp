@@ -53,7 +53,7 @@ NodePlace& NodeWriter::place(NodePlace* above, const osg::Matrixd& toAbove, cons
 
 NodePlace& NodeWriter::placeOf(std::size_t node)
 {
-    _places.push_back({nullptr, {}, "", node, _depths[node], _reaches[node]});
+    _places.push_back({nullptr, {}, "", node, _ofNode[node].first, _ofNode[node].second});
     return _places.back();
 }
 
@@ -67,10 +67,9 @@ std::size_t NodeWriter::add(const std::string& name, const JointTransform& toAbo
     if (glm::vec3(t) != glm::vec3(0.0f)) node["translation"] = {t.x, t.y, t.z};
     if (r != glm::vec4(0, 0, 0, 1)) node["rotation"] = {r.x, r.y, r.z, r.w};
     if (glm::vec3(s) != glm::vec3(1.0f)) node["scale"] = {s.x, s.y, s.z};
-    if (above) nodeOf(*above); // exists first
+    const auto [depth, reach] = above ? _ofNode[nodeOf(*above)] : std::pair(std::size_t(0), TransformBound());
     const std::size_t number = append(_writer.document["nodes"], std::move(node));
-    _depths.push_back(1 + (above ? _depths[*above->node] : 0));
-    _reaches.push_back((above ? _reaches[*above->node] : TransformBound()) * TransformBound::of(toAbove));
+    _ofNode.emplace_back(depth + 1, reach * TransformBound::of(toAbove));
     if (above)
         at(*above->node)["children"].push_back(number);
     else

@@ -204,20 +204,16 @@ private:
         }
         for (const ImportedCamera& camera : _result.cameras)
             places.add(static_cast<std::size_t>(camera.node), camera.view);
-        nameVariants(variant);
+        if (_result.character && !_result.variantNames.empty())
+        {
+            setVariantNames(*_result.character, _result.variantNames);
+            if (variant >= 0) // the meshes show it already
+                static_cast<void>(_result.character->getMeshes().setVariant(elementOf(_result.variantNames, variant)));
+        }
         if (_result.lights.empty()) return;
         const osg::Matrixd toFile = osg::Matrixd::inverse(_result.fileToNode);
         addLights(_model, tree, _result.root->getBound().center() * toFile, places, *_result.root, _result.lights,
                   _report);
-    }
-
-    /// The meshes show the variant already.
-    void nameVariants(int variant)
-    {
-        if (!_result.character || _result.variantNames.empty()) return;
-        setVariantNames(*_result.character, _result.variantNames);
-        if (variant >= 0)
-            static_cast<void>(_result.character->getMeshes().setVariant(elementOf(_result.variantNames, variant)));
     }
 
     /// By node: it stands still and has a light or a camera.

@@ -96,15 +96,6 @@ bool CharacterWriter::needsNodeAbove(const AnimationSet& set) const
     return std::any_of(_skins.begin(), _skins.end(), hasRoots);
 }
 
-void CharacterWriter::writeJoints(const Skeleton& skeleton, NodePlace* above, WrittenCharacter& made)
-{
-    for (const Joint& joint : skeleton.joints())
-    {
-        NodePlace* const parent = joint.parent < 0 ? above : &_nodes.placeOf(elementOf(made.nodeOfJoint, joint.parent));
-        made.nodeOfJoint.push_back(_nodes.add(joint.name, joint.rest, parent));
-    }
-}
-
 void CharacterWriter::writeSkins(const AnimationSet& set, WrittenCharacter& made)
 {
     made.isInSkin.assign(set.skeleton().jointCount(), false);
@@ -182,7 +173,11 @@ WrittenCharacter CharacterWriter::write(const std::shared_ptr<const AnimationSet
         _skins.emplace_back(set->entriesOfSkin(skin).begin(), set->entriesOfSkin(skin).end());
     addGroups(*set, meshes);
     if (!toAbove.isIdentity() || needsNodeAbove(*set)) above = &_nodes.place(above, toAbove, name);
-    writeJoints(set->skeleton(), above, made);
+    for (const Joint& joint : set->skeleton().joints())
+    {
+        NodePlace* const parent = joint.parent < 0 ? above : &_nodes.placeOf(elementOf(made.nodeOfJoint, joint.parent));
+        made.nodeOfJoint.push_back(_nodes.add(joint.name, joint.rest, parent));
+    }
     writeSkins(*set, made);
     for (const Group& group : _groups)
         writeGroup(group, made);

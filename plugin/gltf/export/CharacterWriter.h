@@ -73,7 +73,6 @@ private:
     int skinOf(const AnimationSet& set, const SkinnedGeometry& mesh);
     void addGroups(const AnimationSet& set, const std::vector<CharacterMesh>& meshes);
     bool needsNodeAbove(const AnimationSet& set) const;
-    void writeJoints(const Skeleton& skeleton, NodePlace* above, WrittenCharacter& made);
     void writeSkins(const AnimationSet& set, WrittenCharacter& made);
     void writeGroup(const Group& group, WrittenCharacter& made);
 

@@ -77,20 +77,19 @@ std::size_t NodeWriter::add(const std::string& name, const JointTransform& toAbo
     return number;
 }
 
-std::size_t NodeWriter::add(const std::string& name, const NodeTransform& toAbove, NodePlace* above)
-{
-    if (!toAbove.outer) return add(name, toAbove.inner, above);
-    NodePlace& outer = placeOf(add(name.empty() ? name : name + " shear", *toAbove.outer, above));
-    return add(name, toAbove.inner, &outer);
-}
-
 std::size_t NodeWriter::nodeOf(NodePlace& place)
 {
     std::vector<NodePlace*> missing;
     for (NodePlace* each = &place; each && !each->node; each = each->above)
         missing.push_back(each);
     for (auto each = missing.rbegin(); each != missing.rend(); ++each) // a node above exists first: no recursion
-        (*each)->node = add((*each)->name, (*each)->toAbove, (*each)->above);
+    {
+        const std::string& name = (*each)->name;
+        NodePlace* above = (*each)->above;
+        if (const std::optional<JointTransform>& outer = (*each)->toAbove.outer)
+            above = &placeOf(add(name.empty() ? name : name + " shear", *outer, above));
+        (*each)->node = add(name, (*each)->toAbove.inner, above);
+    }
     return *place.node;
 }
 

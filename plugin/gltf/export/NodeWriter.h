@@ -72,8 +72,6 @@ public:
     nlohmann::json& at(std::size_t node) { return _writer.document["nodes"][node]; }
 
 private:
-    std::size_t add(const std::string& name, const NodeTransform& toAbove, NodePlace* above);
-
     GlbWriter& _writer;
     Report& _report;
     std::deque<NodePlace> _places; ///< keeps addresses

@@ -21,19 +21,14 @@ const tinygltf::Value& memberOf(const tinygltf::ExtensionMap& extensions, const 
     return extension.IsObject() ? extension.Get(member) : extension;
 }
 
-/// Takes the material's coordinates if they begin like the known ones, or the known ones like these.
-bool takeCoordinates(const std::vector<TextureCoordinates>& wanted, std::vector<TextureCoordinates>& known)
-{
-    const std::size_t common = std::min(wanted.size(), known.size());
-    if (!std::equal(wanted.begin(), wanted.begin() + static_cast<std::ptrdiff_t>(common), known.begin())) return false;
-    if (wanted.size() > known.size()) known = wanted;
-    return true;
-}
-
-/// False, and no change, if the vertices cannot have the coordinates of the material too.
+/// False, and no change, if the vertices cannot have the coordinates of the material, too: they begin like the known
+/// ones, or the known ones like these.
 bool add(const tinygltf::Material& material, const MaterialMaps& maps, PrimitiveMaterials& materials)
 {
-    if (!takeCoordinates(maps.coordinates, materials.coordinates)) return false;
+    const std::vector<TextureCoordinates>& wanted = maps.coordinates;
+    const auto common = static_cast<std::ptrdiff_t>(std::min(wanted.size(), materials.coordinates.size()));
+    if (!std::equal(wanted.begin(), wanted.begin() + common, materials.coordinates.begin())) return false;
+    if (wanted.size() > materials.coordinates.size()) materials.coordinates = wanted;
     materials.hasNormalMap |= maps.hasNormalMap();
     materials.isBlended |= material.alphaMode == "BLEND";
     materials.isTransparent |= materials.isBlended || material.extensions.count("KHR_materials_transmission") > 0;

@@ -239,7 +239,7 @@ public:
                 return error;
         for (std::size_t c = 0; c < animation.channels.size(); ++c)
         {
-            if (!isUsed(animation.channels[c])) continue;
+            if (animation.channels[c].target_node < 0 && !propertyOf(animation.channels[c])) continue;
             const std::optional<Error> error = validateChannel(a, c);
             if (!error) continue;
             if (!hasPointer(animation.channels[c])) return error;
@@ -250,11 +250,6 @@ public:
     }
 
 private:
-    static bool isUsed(const tinygltf::AnimationChannel& channel)
-    {
-        return channel.target_node >= 0 || propertyOf(channel).has_value();
-    }
-
     const tinygltf::Accessor& accessorOf(int index) const { return elementOf(_model.accessors, index); }
 
     std::optional<Error> validateInput(int input, const std::string& name) const
@@ -291,7 +286,9 @@ private:
                          std::to_string(perTime) + " values for each of " + std::to_string(times) + " times",
                          std::to_string(output.count) + " values" + in(sampler.output));
         if (property) return std::nullopt;
-        warnOfMatrix(channel, channelName);
+        if (!elementOf(_model.nodes, channel.target_node).matrix.empty())
+            _report.warn(channelName() + ".target: " + elementName("nodes", channel.target_node) +
+                         " has a matrix, which no animation should change");
         if (std::string_view(channel.target_path) == "rotation") mendRotations(sampler, samplerName);
         return std::nullopt;
     }
@@ -302,14 +299,6 @@ private:
         if (std::string_view(channel.target_path) != "weights" || weightOf(channel) >= 0) return 1;
         const int mesh = elementOf(_model.nodes, channel.target_node).mesh;
         return mesh < 0 ? 0 : elementOf(_model.meshes, mesh).primitives.front().targets.size();
-    }
-
-    template <typename Name>
-    void warnOfMatrix(const tinygltf::AnimationChannel& channel, const Name& name)
-    {
-        if (!elementOf(_model.nodes, channel.target_node).matrix.empty())
-            _report.warn(name() + ".target: " + elementName("nodes", channel.target_node) +
-                         " has a matrix, which no animation should change");
     }
 
     /// Replaces a quaternion of length 0, which is not a rotation, by the one before it.

@@ -44,11 +44,6 @@ const List lists[] = {
     {"lights", "", sizeof(tinygltf::Light)}, // of KHR_lights_punctual
 };
 
-JsonValue elementsOf(const JsonValue& document, const List& list)
-{
-    return list.name == "lights" ? document["extensions"]["KHR_lights_punctual"]["lights"] : document[list.name];
-}
-
 /// Extras and variants become tinygltf::Values, which are more than twice as large as a value of the tree.
 std::size_t bytesOfValues(const JsonValue& json)
 {
@@ -79,7 +74,9 @@ std::optional<Error> checkDocumentBytes(JsonTree& json, std::size_t limit)
     std::size_t bytes = json.size() * bytesOfJsonValue + bytesOfVariants(json.root());
     for (const List& list : lists)
     {
-        const JsonValue elements = elementsOf(json.root(), list);
+        const JsonValue root = json.root();
+        const JsonValue elements =
+            list.name == "lights" ? root["extensions"]["KHR_lights_punctual"]["lights"] : root[list.name];
         if (!elements || !elements.is(JsonTree::Type::Array)) continue;
         bytes += bytesOf(elements, list);
         if (bytes > limit)

@@ -51,14 +51,6 @@ osg::ref_ptr<osg::LightSource> makeSource(const tinygltf::Model& model, const Im
     return source;
 }
 
-double distanceOf(const tinygltf::Model& model, const NodeTree& tree, const ImportedLight& light,
-                  const osg::Vec3d& middle)
-{
-    if (kindOf(elementOf(model.lights, light.light)) == PunctualLight::Kind::Directional) return -1.0;
-    const glm::dvec4& place = elementOf(tree.toWorld, light.node)[3];
-    return (osg::Vec3d(place.x, place.y, place.z) - middle).length();
-}
-
 /// The indices of the lights that remain, in their order.
 std::vector<std::size_t> nearest(const tinygltf::Model& model, const NodeTree& tree, const osg::Vec3d& middle,
                                  const std::vector<ImportedLight>& lights, Report& report)
@@ -68,7 +60,11 @@ std::vector<std::size_t> nearest(const tinygltf::Model& model, const NodeTree& t
     if (lights.size() <= maxLights) return kept;
     std::vector<double> distances;
     for (const ImportedLight& light : lights)
-        distances.push_back(distanceOf(model, tree, light, middle));
+    {
+        const glm::dvec4& place = elementOf(tree.toWorld, light.node)[3];
+        const bool isEverywhere = kindOf(elementOf(model.lights, light.light)) == PunctualLight::Kind::Directional;
+        distances.push_back(isEverywhere ? -1.0 : (osg::Vec3d(place.x, place.y, place.z) - middle).length());
+    }
     std::stable_sort(kept.begin(), kept.end(),
                      [&](std::size_t a, std::size_t b) { return distances[a] < distances[b]; });
     kept.resize(maxLights);

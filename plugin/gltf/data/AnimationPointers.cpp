@@ -75,7 +75,7 @@ JsonValue below(JsonValue value, std::string_view path)
     while (value && !path.empty())
     {
         const std::size_t slash = std::min(path.find('/'), path.size());
-        value = value.is(JsonTree::Type::Object) ? value[path.substr(0, slash)] : JsonValue();
+        value = value[path.substr(0, slash)];
         path.remove_prefix(std::min(slash + 1, path.size()));
     }
     return value;
@@ -100,23 +100,202 @@ public:
     {
     }
 
-    void run();
+    void run()
+    {
+        for (std::size_t a = 0; a < _model.animations.size(); ++a)
+        {
+            _animation = &_model.animations[a];
+            _taken.clear();
+            for (const tinygltf::AnimationChannel& channel : _animation->channels)
+                if (channel.target_node >= 0) _taken[{channel.target_node, channel.target_path}].insert(-1);
+            for (std::size_t c = 0; c < _animation->channels.size(); ++c)
+                resolve(a, c);
+            _animation->channels.insert(_animation->channels.end(), _added.begin(), _added.end());
+            _added.clear();
+        }
+        if (!_rest.empty()) _model.extensions[extensionName] = tinygltf::Value(std::move(_rest));
+    }
 
 private:
-    void resolve(std::size_t animation, std::size_t channel);
-    void resolveTransform(const TransformPointer& pointer);
-    void resolveProperty(const PropertyPointer& pointer);
+    void resolve(std::size_t animation, std::size_t channel)
+    {
+        _channel = &_animation->channels[channel];
+        if (_channel->target_path != pointerPath) return;
+        _name = elementName("animations", animation, "channels", channel);
+        _pointer = _channel->extensions[extensionName].Get<std::string>();
+        if (const std::optional<TransformPointer> transform = parseTransform(_pointer))
+            resolveTransform(*transform);
+        else if (const std::optional<PropertyPointer> property = PropertyPointer::parse(_pointer))
+            resolveProperty(*property);
+        else
+            refuse("it points to nothing that is drawn");
+    }
+
+    void resolveTransform(const TransformPointer& pointer)
+    {
+        const std::string fault = faultOf(pointer);
+        if (!fault.empty()) return refuse(fault);
+        if (!_taken.try_emplace({-1, _pointer}).second) return refuse("another channel animates it");
+        const std::size_t before = _added.size();
+        addNodes(pointer);
+        if (_visitedCount == maxVisited)
+            return refuse("the file's pointers move more than " + std::to_string(maxVisited) + " nodes");
+        if (_added.size() == before)
+            return refuse(pointer.isMesh
+                              ? "no node shows the mesh with its own weights, or another channel animates them"
+                              : "another channel animates it");
+        *_channel = std::move(_added.back());
+        _added.pop_back();
+    }
+
+    void resolveProperty(const PropertyPointer& pointer)
+    {
+        const std::string fault = faultOf(pointer);
+        if (!fault.empty()) return refuse(fault);
+        if (!_taken.try_emplace({-1, _pointer}).second) return refuse("another channel animates it");
+        _channel->target_path = _pointer;
+        keepRest(*pointer.member, pointer.index);
+        for (const PropertyMember& member : PropertyMember::all())
+            if (!member.group.empty() && member.group == pointer.member->group &&
+                member.object == pointer.member->object)
+                keepRest(member, pointer.index);
+        keepEffect(pointer);
+    }
+
     /// Those that show the mesh with its own weights.
-    const std::vector<int>& nodesOf(int mesh);
-    void addNodes(const TransformPointer& pointer);
-    std::string faultOf(const TransformPointer& pointer) const;
-    std::string faultOf(const PropertyPointer& pointer) const;
-    std::string faultOfMaterial(const PropertyPointer& pointer) const;
-    bool isTaken(int node, const std::string& path, int weight) const;
-    std::size_t targetsOf(int mesh) const;
-    void refuse(const std::string& why);
-    void keepRest(const PropertyMember& member, int index);
-    void keepEffect(const PropertyPointer& pointer);
+
+    const std::vector<int>& nodesOf(int mesh)
+    {
+        if (_nodesOfMesh.empty())
+            for (std::size_t node = 0; node < _model.nodes.size(); ++node)
+                if (_model.nodes[node].weights.empty())
+                    _nodesOfMesh[_model.nodes[node].mesh].push_back(static_cast<int>(node));
+        return _nodesOfMesh[mesh];
+    }
+
+    void addNodes(const TransformPointer& pointer)
+    {
+        for (const int index : pointer.isMesh ? nodesOf(pointer.index) : std::vector<int>{pointer.index})
+        {
+            if (_visitedCount == maxVisited) return;
+            ++_visitedCount;
+            if (isTaken(index, pointer.path, pointer.weight)) continue;
+            _taken[{index, pointer.path}].insert(pointer.weight);
+            tinygltf::AnimationChannel channel = *_channel;
+            channel.target_node = index;
+            channel.target_path = pointer.path;
+            if (pointer.weight >= 0) channel.target_extensions[weightName] = tinygltf::Value(pointer.weight);
+            _added.push_back(std::move(channel));
+        }
+    }
+
+    std::string faultOf(const TransformPointer& pointer) const
+    {
+        const std::size_t count = pointer.isMesh ? _model.meshes.size() : _model.nodes.size();
+        const auto index = static_cast<std::size_t>(pointer.index);
+        if (index >= count)
+            return "expected an index below " + std::to_string(count) + " of the file's " +
+                   (pointer.isMesh ? "meshes" : "nodes") + ", found " + std::to_string(index);
+        if (pointer.path != "weights") return "";
+        const int mesh = pointer.isMesh ? pointer.index : _model.nodes[index].mesh;
+        const std::size_t targets = mesh < 0 ? 0 : targetsOf(mesh);
+        if (targets == 0) return "expected a mesh with morph targets, found none";
+        if (pointer.weight >= 0 && static_cast<std::size_t>(pointer.weight) >= targets)
+            return "expected a weight below " + std::to_string(targets) + ", found " + std::to_string(pointer.weight);
+        return "";
+    }
+
+    std::string faultOf(const PropertyPointer& pointer) const
+    {
+        const PropertyMember& member = *pointer.member;
+        const std::vector<JsonValue>& all = objects(member.object);
+        if (static_cast<std::size_t>(pointer.index) >= all.size())
+            return "expected an index below " + std::to_string(all.size()) + " of " +
+                   nameOfObject[static_cast<std::size_t>(member.object)] + ", found " + std::to_string(pointer.index);
+        const JsonValue object = elementOf(all, pointer.index);
+        if (member.object == Object::Material) return faultOfMaterial(pointer);
+        if (member.object == Object::Node) return "";
+        if (!object["type"]) return "it was left out"; // for a fault of its own
+        if (member.object == Object::Camera && member.name.find(object["type"].text()) != 0)
+            return "the camera is not such";
+        if (member.name.find("spot/") == 0 && object["type"].text() != "spot") return "the light is no spot";
+        return "";
+    }
+
+    std::string faultOfMaterial(const PropertyPointer& pointer) const
+    {
+        const JsonValue material = elementOf(objects(Object::Material), pointer.index);
+        if (pointer.member->name == "alphaCutoff" && (!material["alphaMode"] || material["alphaMode"].text() != "MASK"))
+            return "the material's alphaMode is not MASK";
+        if (pointer.member->texture.empty() || below(material, pointer.member->texture + "/index")) return "";
+        return "the material has no such texture";
+    }
+
+    bool isTaken(int node, const std::string& path, int weight) const
+    {
+        const auto found = _taken.find({node, path});
+        return found != _taken.end() && (weight < 0 || found->second.count(-1) > 0 || found->second.count(weight) > 0);
+    }
+
+    std::size_t targetsOf(int mesh) const
+    {
+        const auto& primitives = elementOf(_model.meshes, mesh).primitives;
+        return primitives.empty() ? 0 : primitives.front().targets.size();
+    }
+
+    void refuse(const std::string& why)
+    {
+        _report.warn(_name + ".target: pointer " + '"' + printable(_pointer, 160) + "\": " + why + "; channel ignored");
+        dropTarget(*_channel);
+    }
+
+    void keepRest(const PropertyMember& member, int index)
+    {
+        const std::string pointer = PropertyPointer::text(member, index);
+        if (_rest.count(pointer) > 0) return;
+        const JsonValue value = below(elementOf(objects(member.object), index), member.name);
+        std::vector<JsonValue> given = elementsOf(value);
+        if (value && !value.is(JsonTree::Type::Array)) given = {value}; // 1 for true
+        tinygltf::Value::Array rest;
+        for (std::size_t i = 0; i < member.count; ++i)
+            rest.emplace_back(i < given.size() ? given[i].number() : static_cast<double>(member.rest[i]));
+        _rest[pointer] = tinygltf::Value(std::move(rest));
+    }
+
+    /// PbrMaterial::hasEffect() and applyPbrMaterial() leave out what has no effect at rest.
+    void keepEffect(const PropertyPointer& pointer)
+    {
+        constexpr double min = 1e-6;
+        static constexpr struct
+        {
+            const char *extension, *member;
+            double withoutEffect, withEffect;
+        } factors[] = {{"KHR_materials_clearcoat", "clearcoatFactor", 0.0, min},
+                       {"KHR_materials_transmission", "transmissionFactor", 0.0, min},
+                       {"KHR_materials_sheen", "sheenColorFactor", 0.0, min},
+                       {"KHR_materials_emissive_strength", "emissiveStrength", 1.0, 1.0 + min}};
+        if (pointer.member->object != Object::Material) return;
+        tinygltf::Material& material = elementOf(_model.materials, pointer.index);
+        const tinygltf::Value::Array& rest =
+            _rest[PropertyPointer::text(*pointer.member, pointer.index)].Get<tinygltf::Value::Array>();
+        const std::string& name = pointer.member->name;
+        for (const auto& factor : factors)
+        {
+            const auto isWithoutEffect = [&](const tinygltf::Value& value)
+            { return value.GetNumberAsDouble() == factor.withoutEffect; };
+            if (name != std::string("extensions/") + factor.extension + '/' + factor.member ||
+                !std::all_of(rest.begin(), rest.end(), isWithoutEffect))
+                continue;
+            const tinygltf::Value number(factor.withEffect), none(0.0);
+            setNumber(material, factor.extension, factor.member,
+                      rest.size() == 1 ? number : tinygltf::Value(tinygltf::Value::Array{number, none, none}));
+        }
+        if (pointer.member->group != "reflection" && name != "extensions/KHR_materials_specular/specularFactor") return;
+        const tinygltf::Value& specular = material.extensions["KHR_materials_specular"];
+        if (!specular.Has("specularFactor") || specular.Get("specularFactor").GetNumberAsDouble() == 1.0)
+            setNumber(material, "KHR_materials_specular", "specularFactor", tinygltf::Value(1.0 - min));
+    }
+
     const std::vector<JsonValue>& objects(Object object) const { return _objects[static_cast<std::size_t>(object)]; }
 
     tinygltf::Model& _model;
@@ -128,222 +307,18 @@ private:
     std::string _pointer; ///< of the channel
     tinygltf::AnimationChannel* _channel = nullptr;
     std::vector<tinygltf::AnimationChannel> _added; ///< for further nodes of a mesh
-    std::set<std::pair<int, std::string>> _taken;   ///< of the animation: node and path, or -1 and pointer
-    std::set<std::pair<int, int>> _takenWeights;    ///< node and weight
-    std::set<int> _nodesWithTakenWeights;           ///< some of their weights are taken one by one
+    /// Of the animation, by node and path, or -1 and pointer: the weights that are taken one by one; -1: all.
+    std::map<std::pair<int, std::string>, std::set<int>> _taken;
     std::map<int, std::vector<int>> _nodesOfMesh;
     std::size_t _visitedCount = 0;
 };
 
-void PointerResolver::refuse(const std::string& why)
+/// The values at rest of the properties that clips animate, by pointer.
+const tinygltf::Value::Object& restOf(const tinygltf::Model& model)
 {
-    _report.warn(_name + ".target: pointer " + '"' + printable(_pointer, 160) + "\": " + why + "; channel ignored");
-    dropTarget(*_channel);
-}
-
-std::size_t PointerResolver::targetsOf(int mesh) const
-{
-    const auto& primitives = elementOf(_model.meshes, mesh).primitives;
-    return primitives.empty() ? 0 : primitives.front().targets.size();
-}
-
-bool PointerResolver::isTaken(int node, const std::string& path, int weight) const
-{
-    if (_taken.count({node, path}) > 0) return true;
-    if (path != "weights") return false;
-    return weight < 0 ? _nodesWithTakenWeights.count(node) > 0 : _takenWeights.count({node, weight}) > 0;
-}
-
-std::string PointerResolver::faultOf(const TransformPointer& pointer) const
-{
-    const std::size_t count = pointer.isMesh ? _model.meshes.size() : _model.nodes.size();
-    const auto index = static_cast<std::size_t>(pointer.index);
-    if (index >= count)
-        return "expected an index below " + std::to_string(count) + " of the file's " +
-               (pointer.isMesh ? "meshes" : "nodes") + ", found " + std::to_string(index);
-    if (pointer.path != "weights") return "";
-    const int mesh = pointer.isMesh ? pointer.index : _model.nodes[index].mesh;
-    const std::size_t targets = mesh < 0 ? 0 : targetsOf(mesh);
-    if (targets == 0) return "expected a mesh with morph targets, found none";
-    if (pointer.weight >= 0 && static_cast<std::size_t>(pointer.weight) >= targets)
-        return "expected a weight below " + std::to_string(targets) + ", found " + std::to_string(pointer.weight);
-    return "";
-}
-
-const std::vector<int>& PointerResolver::nodesOf(int mesh)
-{
-    if (_nodesOfMesh.empty())
-        for (std::size_t node = 0; node < _model.nodes.size(); ++node)
-            if (_model.nodes[node].weights.empty())
-                _nodesOfMesh[_model.nodes[node].mesh].push_back(static_cast<int>(node));
-    return _nodesOfMesh[mesh];
-}
-
-void PointerResolver::addNodes(const TransformPointer& pointer)
-{
-    for (const int index : pointer.isMesh ? nodesOf(pointer.index) : std::vector<int>{pointer.index})
-    {
-        if (_visitedCount == maxVisited) return;
-        ++_visitedCount;
-        if (isTaken(index, pointer.path, pointer.weight)) continue;
-        if (pointer.weight >= 0)
-        {
-            _takenWeights.insert({index, pointer.weight});
-            _nodesWithTakenWeights.insert(index);
-        }
-        else
-            _taken.insert({index, pointer.path});
-        tinygltf::AnimationChannel channel = *_channel;
-        channel.target_node = index;
-        channel.target_path = pointer.path;
-        if (pointer.weight >= 0) channel.target_extensions[weightName] = tinygltf::Value(pointer.weight);
-        _added.push_back(std::move(channel));
-    }
-}
-
-void PointerResolver::resolveTransform(const TransformPointer& pointer)
-{
-    const std::string fault = faultOf(pointer);
-    if (!fault.empty()) return refuse(fault);
-    if (!_taken.insert({-1, _pointer}).second) return refuse("another channel animates it");
-    const std::size_t before = _added.size();
-    addNodes(pointer);
-    if (_visitedCount == maxVisited)
-        return refuse("the file's pointers move more than " + std::to_string(maxVisited) + " nodes");
-    if (_added.size() == before)
-        return refuse(pointer.isMesh ? "no node shows the mesh with its own weights, or another channel animates them"
-                                     : "another channel animates it");
-    *_channel = std::move(_added.back());
-    _added.pop_back();
-}
-
-std::string PointerResolver::faultOfMaterial(const PropertyPointer& pointer) const
-{
-    const JsonValue material = elementOf(objects(Object::Material), pointer.index);
-    if (pointer.member->name == "alphaCutoff" && (!material["alphaMode"] || material["alphaMode"].text() != "MASK"))
-        return "the material's alphaMode is not MASK";
-    if (pointer.member->texture.empty() || below(material, pointer.member->texture + "/index")) return "";
-    return "the material has no such texture";
-}
-
-std::string PointerResolver::faultOf(const PropertyPointer& pointer) const
-{
-    const PropertyMember& member = *pointer.member;
-    const std::vector<JsonValue>& all = objects(member.object);
-    if (static_cast<std::size_t>(pointer.index) >= all.size())
-        return "expected an index below " + std::to_string(all.size()) + " of " +
-               nameOfObject[static_cast<std::size_t>(member.object)] + ", found " + std::to_string(pointer.index);
-    const JsonValue object = elementOf(all, pointer.index);
-    if (member.object == Object::Material) return faultOfMaterial(pointer);
-    if (member.object == Object::Node) return "";
-    if (!object["type"]) return "it was left out"; // for a fault of its own
-    if (member.object == Object::Camera && member.name.find(object["type"].text()) != 0)
-        return "the camera is not such";
-    if (member.name.find("spot/") == 0 && object["type"].text() != "spot") return "the light is no spot";
-    return "";
-}
-
-void PointerResolver::keepRest(const PropertyMember& member, int index)
-{
-    const std::string pointer = PropertyPointer::text(member, index);
-    if (_rest.count(pointer) > 0) return;
-    const JsonValue value = below(elementOf(objects(member.object), index), member.name);
-    std::vector<double> numbers;
-    for (const JsonValue& element : value)
-        numbers.push_back(element.number());
-    if (value && !value.is(JsonTree::Type::Array)) numbers.push_back(value.number()); // 1 for true
-    for (std::size_t i = numbers.size(); i < member.count; ++i)
-        numbers.push_back(static_cast<double>(member.rest[i]));
-    tinygltf::Value::Array rest;
-    for (std::size_t i = 0; i < member.count; ++i)
-        rest.emplace_back(numbers[i]);
-    _rest[pointer] = tinygltf::Value(std::move(rest));
-}
-
-/// PbrMaterial::hasEffect() and applyPbrMaterial() leave out what has no effect at rest.
-void PointerResolver::keepEffect(const PropertyPointer& pointer)
-{
-    if (pointer.member->object != Object::Material) return;
-    tinygltf::Material& material = elementOf(_model.materials, pointer.index);
-    const tinygltf::Value::Array& rest =
-        _rest[PropertyPointer::text(*pointer.member, pointer.index)].Get<tinygltf::Value::Array>();
-    const auto isAll = [&](double number)
-    {
-        return std::all_of(rest.begin(), rest.end(),
-                           [&](const tinygltf::Value& value) { return value.GetNumberAsDouble() == number; });
-    };
-    const std::string& name = pointer.member->name;
-    constexpr double min = 1e-6;
-    const auto least3 = [] {
-        return tinygltf::Value(
-            tinygltf::Value::Array{tinygltf::Value(min), tinygltf::Value(0.0), tinygltf::Value(0.0)});
-    };
-    if (name == "extensions/KHR_materials_clearcoat/clearcoatFactor" && isAll(0.0))
-        setNumber(material, "KHR_materials_clearcoat", "clearcoatFactor", tinygltf::Value(min));
-    else if (name == "extensions/KHR_materials_transmission/transmissionFactor" && isAll(0.0))
-        setNumber(material, "KHR_materials_transmission", "transmissionFactor", tinygltf::Value(min));
-    else if (name == "extensions/KHR_materials_sheen/sheenColorFactor" && isAll(0.0))
-        setNumber(material, "KHR_materials_sheen", "sheenColorFactor", least3());
-    else if (name == "extensions/KHR_materials_emissive_strength/emissiveStrength" && isAll(1.0))
-        setNumber(material, "KHR_materials_emissive_strength", "emissiveStrength", tinygltf::Value(1.0 + min));
-    else if (pointer.member->group == "reflection" || name == "extensions/KHR_materials_specular/specularFactor")
-    {
-        const tinygltf::Value& specular = material.extensions["KHR_materials_specular"];
-        if (!specular.Has("specularFactor") || specular.Get("specularFactor").GetNumberAsDouble() == 1.0)
-            setNumber(material, "KHR_materials_specular", "specularFactor", tinygltf::Value(1.0 - min));
-    }
-}
-
-void PointerResolver::resolveProperty(const PropertyPointer& pointer)
-{
-    const std::string fault = faultOf(pointer);
-    if (!fault.empty()) return refuse(fault);
-    if (!_taken.insert({-1, _pointer}).second) return refuse("another channel animates it");
-    _channel->target_path = _pointer;
-    keepRest(*pointer.member, pointer.index);
-    for (const PropertyMember& member : PropertyMember::all())
-        if (!member.group.empty() && member.group == pointer.member->group && member.object == pointer.member->object)
-            keepRest(member, pointer.index);
-    keepEffect(pointer);
-}
-
-void PointerResolver::resolve(std::size_t animation, std::size_t channel)
-{
-    _channel = &_animation->channels[channel];
-    if (_channel->target_path != pointerPath) return;
-    _name = elementName("animations", animation, "channels", channel);
-    _pointer = _channel->extensions[extensionName].Get<std::string>();
-    if (const std::optional<TransformPointer> transform = parseTransform(_pointer))
-        resolveTransform(*transform);
-    else if (const std::optional<PropertyPointer> property = PropertyPointer::parse(_pointer))
-        resolveProperty(*property);
-    else
-        refuse("it points to nothing that is drawn");
-}
-
-void PointerResolver::run()
-{
-    for (std::size_t a = 0; a < _model.animations.size(); ++a)
-    {
-        _animation = &_model.animations[a];
-        _taken.clear();
-        _takenWeights.clear();
-        _nodesWithTakenWeights.clear();
-        for (const tinygltf::AnimationChannel& channel : _animation->channels)
-            if (channel.target_node >= 0) _taken.insert({channel.target_node, channel.target_path});
-        for (std::size_t c = 0; c < _animation->channels.size(); ++c)
-            resolve(a, c);
-        _animation->channels.insert(_animation->channels.end(), _added.begin(), _added.end());
-        _added.clear();
-    }
-    if (!_rest.empty()) _model.extensions[extensionName] = tinygltf::Value(std::move(_rest));
-}
-
-/// Null: clips animate no property.
-const tinygltf::Value::Object* restOf(const tinygltf::Model& model)
-{
+    static const tinygltf::Value::Object none;
     const auto rest = model.extensions.find(extensionName);
-    return rest == model.extensions.end() ? nullptr : &rest->second.Get<tinygltf::Value::Object>();
+    return rest == model.extensions.end() ? none : rest->second.Get<tinygltf::Value::Object>();
 }
 
 std::vector<float> numbersOf(const tinygltf::Value& array)
@@ -388,27 +363,21 @@ void dropTarget(tinygltf::AnimationChannel& channel)
 std::vector<MorphWeights> propertiesOf(const tinygltf::Model& model)
 {
     std::vector<MorphWeights> properties;
-    const tinygltf::Value::Object* rest = restOf(model);
-    if (!rest) return properties;
-    for (const auto& [pointer, numbers] : *rest)
+    for (const auto& [pointer, numbers] : restOf(model))
         properties.push_back({pointer, -1, numbersOf(numbers)});
     return properties;
 }
 
 std::vector<float> valueAtRest(const tinygltf::Model& model, const std::string& pointer)
 {
-    const tinygltf::Value::Object* rest = restOf(model);
-    if (!rest) return {};
-    const auto found = rest->find(pointer);
-    return found == rest->end() ? std::vector<float>() : numbersOf(found->second);
+    const auto found = restOf(model).find(pointer);
+    return found == restOf(model).end() ? std::vector<float>() : numbersOf(found->second);
 }
 
 std::vector<bool> animatedObjects(const tinygltf::Model& model, Object object, std::size_t count)
 {
     std::vector<bool> are(count, false);
-    const tinygltf::Value::Object* rest = restOf(model);
-    if (!rest) return are;
-    for (const auto& [text, numbers] : *rest)
+    for (const auto& [text, numbers] : restOf(model))
     {
         const std::optional<PropertyPointer> pointer = PropertyPointer::parse(text);
         if (pointer && pointer->member->object == object) elementOf(are, pointer->index) = true;

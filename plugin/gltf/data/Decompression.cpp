@@ -21,12 +21,6 @@ namespace
 using Bytes = std::vector<unsigned char>;
 using Model = tinygltf::Model;
 
-bool isRequired(const Model& model, const char* extension)
-{
-    const std::vector<std::string>& required = model.extensionsRequired;
-    return std::find(required.begin(), required.end(), extension) != required.end();
-}
-
 // The codecs' headers alone need more than a 256th of the decoded size: less data is cut off, and no memory is
 // allocated for it.
 const std::size_t bestRatio = 256;
@@ -98,13 +92,12 @@ std::optional<Error> check(const Compressed& view, const tinygltf::BufferView& p
     if (view.count * view.stride != parent.byteLength)
         return fault(name + ".count",
                      "count times byteStride to be the " + std::to_string(parent.byteLength) + " bytes of the view",
-                     std::to_string(view.count * view.stride));
+                     view.count * view.stride);
     if (view.count * view.stride / bestRatio > view.byteLength)
         return fault(name + ".byteLength", "enough data for " + std::to_string(view.count * view.stride) + " bytes",
-                     std::to_string(view.byteLength));
+                     view.byteLength);
     if (parent.byteStride != 0 && parent.byteStride != view.stride)
-        return fault(name + ".byteStride", "that of the view, " + std::to_string(parent.byteStride),
-                     std::to_string(view.stride));
+        return fault(name + ".byteStride", "that of the view, " + std::to_string(parent.byteStride), view.stride);
     return std::nullopt;
 }
 
@@ -114,7 +107,7 @@ std::optional<Error> decompress(const Compressed& view, std::size_t index, const
     tinygltf::BufferView& parent = model.bufferViews[index];
     const Bytes& source = model.buffers[view.buffer].data;
     if (std::optional<Error> error = check(view, parent, source, name)) return error;
-    if (!budget.take(parent.byteLength)) return fault(name, budget.limitText(), std::to_string(parent.byteLength));
+    if (!budget.take(parent.byteLength)) return fault(name, budget.limitText(), parent.byteLength);
     Bytes out(parent.byteLength);
     const Result<void> decoded = decodeMeshopt(view, source.data() + view.byteOffset, view.byteLength, out);
     if (!decoded) return Error{name + ": " + decoded.error().message};
@@ -131,83 +124,48 @@ bool hasPlainData(const Model& model, const tinygltf::Primitive& primitive)
                        { return elementOf(model.accessors, attribute.second).bufferView >= 0; });
 }
 
-/// Decodes one primitive from its bit stream into accessors.
-class DracoPrimitive
+/// Adds an accessor like the file's over the decoded data.
+int addCopy(Model& model, tinygltf::Accessor accessor, Bytes bytes)
 {
-public:
-    DracoPrimitive(Model& model, tinygltf::Primitive& primitive, const JsonValue& extension, std::string name)
-        : _model(model), _primitive(primitive), _extension(extension),
-          _name(std::move(name) + ".extensions.KHR_draco_mesh_compression")
-    {
-    }
+    accessor.bufferView = addBufferView(model, std::move(bytes), 0);
+    accessor.byteOffset = 0;
+    accessor.sparse.isSparse = false;
+    model.accessors.push_back(std::move(accessor));
+    return static_cast<int>(model.accessors.size() - 1);
+}
 
-    std::optional<Error> decompress(MemoryBudget& budget)
+/// Decodes one primitive from its bit stream into accessors.
+std::optional<Error> decompress(Model& model, tinygltf::Primitive& primitive, const JsonValue& extension,
+                                const std::string& name, MemoryBudget& budget)
+{
+    if (primitive.mode != TINYGLTF_MODE_TRIANGLES || primitive.indices < 0)
+        return fault(name, "a primitive of indexed triangles", "mode " + std::to_string(primitive.mode));
+    tinygltf::Accessor indices = elementOf(model.accessors, primitive.indices);
+    std::vector<DracoAttribute> attributes;
+    std::size_t bytes = indices.count * sizeof(std::uint32_t);
+    for (const JsonValue& attribute : extension["attributes"])
     {
-        if (_primitive.mode != TINYGLTF_MODE_TRIANGLES || _primitive.indices < 0)
-            return fault(_name, "a primitive of indexed triangles", "mode " + std::to_string(_primitive.mode));
-        const std::size_t count = elementOf(_model.accessors, _primitive.indices).count;
-        const tinygltf::BufferView& view =
-            _model.bufferViews[static_cast<std::size_t>(_extension["bufferView"].number())];
-        const unsigned char* const data = elementOf(_model.buffers, view.buffer).data.data() + view.byteOffset;
-        const Result<DracoMesh> mesh = DracoMesh::decode(data, view.byteLength, count / 3);
-        if (!mesh) return Error{_name + ": " + mesh.error().message};
-        if (!budget.take(bytesOf(mesh.value(), count))) return fault(_name, budget.limitText(), "more");
-        for (const JsonValue& attribute : _extension["attributes"])
-            if (std::optional<Error> error = replaceAttribute(mesh.value(), attribute)) return error;
-        tinygltf::Accessor indices = elementOf(_model.accessors, _primitive.indices);
-        indices.componentType = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
-        _primitive.indices = addCopy(indices, bytesOf(mesh.value().indices()));
-        return std::nullopt;
+        const auto found = primitive.attributes.find(std::string(attribute.key()));
+        if (found == primitive.attributes.end()) continue; // the document rules have left it out
+        const tinygltf::Accessor& accessor = elementOf(model.accessors, found->second);
+        attributes.push_back({found->first, static_cast<std::uint32_t>(attribute.number()), found->second,
+                              accessor.count, componentCount(accessor), accessor.componentType});
+        bytes += accessor.count * elementBytes(accessor);
     }
-
-private:
-    static std::vector<unsigned char> bytesOf(const std::vector<std::uint32_t>& indices)
-    {
-        const unsigned char* const begin = reinterpret_cast<const unsigned char*>(indices.data());
-        return std::vector<unsigned char>(begin, begin + indices.size() * sizeof(std::uint32_t));
-    }
-
-    std::size_t bytesOf(const DracoMesh& mesh, std::size_t indices) const
-    {
-        std::size_t bytes = indices * sizeof(std::uint32_t);
-        for (const auto& attribute : _primitive.attributes)
-            bytes += mesh.vertices() * elementBytes(elementOf(_model.accessors, attribute.second));
-        return bytes;
-    }
-
-    std::optional<Error> replaceAttribute(const DracoMesh& mesh, const JsonValue& attribute)
-    {
-        const std::string key(attribute.key());
-        const auto found = _primitive.attributes.find(key);
-        if (found == _primitive.attributes.end()) return std::nullopt; // the document rules have left it out
-        const tinygltf::Accessor accessor = elementOf(_model.accessors, found->second);
-        const std::string name = _name + ".attributes." + printable(key);
-        if (accessor.count != mesh.vertices())
-            return fault(name,
-                         std::to_string(accessor.count) + " vertices as in " + elementName("accessors", found->second),
-                         std::to_string(mesh.vertices()));
-        Result<std::vector<unsigned char>> bytes = mesh.attribute(static_cast<std::uint32_t>(attribute.number()),
-                                                                  componentCount(accessor), accessor.componentType);
-        if (!bytes) return Error{name + ": " + bytes.error().message};
-        found->second = addCopy(accessor, std::move(bytes).value());
-        return std::nullopt;
-    }
-
-    /// Adds an accessor like the file's over the decoded data.
-    int addCopy(tinygltf::Accessor accessor, std::vector<unsigned char> bytes)
-    {
-        accessor.bufferView = addBufferView(_model, std::move(bytes), 0);
-        accessor.byteOffset = 0;
-        accessor.sparse.isSparse = false;
-        _model.accessors.push_back(std::move(accessor));
-        return static_cast<int>(_model.accessors.size() - 1);
-    }
-
-    Model& _model;
-    tinygltf::Primitive& _primitive;
-    JsonValue _extension;
-    std::string _name;
-};
+    if (!budget.take(bytes)) return fault(name, budget.limitText(), "more");
+    const tinygltf::BufferView& view = model.bufferViews[static_cast<std::size_t>(extension["bufferView"].number())];
+    const unsigned char* const data = elementOf(model.buffers, view.buffer).data.data() + view.byteOffset;
+    const Result<std::vector<std::uint32_t>> decoded =
+        decodeDraco(data, view.byteLength, indices.count / 3, name, attributes);
+    if (!decoded) return decoded.error();
+    for (DracoAttribute& attribute : attributes)
+        primitive.attributes[attribute.name] =
+            addCopy(model, elementOf(model.accessors, attribute.accessor), std::move(attribute.values));
+    const unsigned char* const begin = reinterpret_cast<const unsigned char*>(decoded.value().data());
+    indices.componentType = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+    primitive.indices = addCopy(model, indices, Bytes(begin, begin + decoded.value().size() * sizeof(std::uint32_t)));
+    return std::nullopt;
+}
 
 } // namespace
 
@@ -222,7 +180,7 @@ std::optional<Error> decompressMeshopt(const JsonValue& bufferViews, MemoryBudge
             const JsonValue compression = bufferView["extensions"][extension];
             if (!compression) continue;
             const std::string name = elementName("bufferViews", i) + ".extensions." + extension;
-            if (isRequired(model, extension) || !hasFallback)
+            if (contains(model.extensionsRequired, extension) || !hasFallback)
                 if (std::optional<Error> error = decompress(Compressed(compression), i, name, budget, model))
                     return error;
             break;
@@ -234,13 +192,13 @@ std::optional<Error> decompressMeshopt(const JsonValue& bufferViews, MemoryBudge
 
 std::optional<Error> decompressDraco(const JsonValue& meshes, MemoryBudget& budget, Model& model)
 {
-    const bool required = isRequired(model, "KHR_draco_mesh_compression");
+    const bool required = contains(model.extensionsRequired, "KHR_draco_mesh_compression");
     const auto decompressPrimitive = [&](const JsonValue& json, const PrimitiveName& name) -> std::optional<Error>
     {
         const JsonValue extension = json["extensions"]["KHR_draco_mesh_compression"];
         tinygltf::Primitive& primitive = model.meshes[name.mesh].primitives[name.primitive];
         if (!extension || (!required && hasPlainData(model, primitive))) return std::nullopt;
-        return DracoPrimitive(model, primitive, extension, name.text()).decompress(budget);
+        return decompress(model, primitive, extension, name.text() + ".extensions.KHR_draco_mesh_compression", budget);
     };
     return forEachPrimitive(meshes, decompressPrimitive);
 }

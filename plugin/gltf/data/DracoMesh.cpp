@@ -11,6 +11,7 @@
 #include <draco/metadata/metadata_decoder.h>
 
 #include <cstring>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -19,8 +20,6 @@ namespace osgGpuAnimation::gltf
 
 namespace
 {
-
-using Bytes = std::vector<unsigned char>;
 
 /// The number of triangles in the header; none if the stream has no header of version 2.2.
 std::optional<std::uint32_t> facesOfHeader(const char* data, std::size_t bytes)
@@ -48,9 +47,10 @@ std::optional<std::uint32_t> facesOfHeader(const char* data, std::size_t bytes)
 }
 
 template <typename Number>
-bool copyValues(const draco::Mesh& mesh, const draco::PointAttribute& attribute, Bytes& out)
+bool readValues(const draco::Mesh& mesh, const draco::PointAttribute& attribute, std::vector<unsigned char>& out)
 {
     const std::size_t components = static_cast<std::size_t>(attribute.num_components());
+    out.resize(mesh.num_points() * components * sizeof(Number));
     Number values[4] = {};
     unsigned char* to = out.data();
     for (draco::PointIndex point(0); point < mesh.num_points(); ++point)
@@ -64,17 +64,9 @@ bool copyValues(const draco::Mesh& mesh, const draco::PointAttribute& attribute,
     return true;
 }
 
-template <typename Number>
-bool readValues(const draco::Mesh& mesh, const draco::PointAttribute& attribute, Bytes& out)
+std::optional<Error> readAttribute(const draco::Mesh& mesh, const std::string& name, DracoAttribute& out)
 {
-    out.resize(static_cast<std::size_t>(mesh.num_points()) * static_cast<std::size_t>(attribute.num_components()) *
-               sizeof(Number));
-    return copyValues<Number>(mesh, attribute, out);
-}
-
-bool readValues(const draco::Mesh& mesh, const draco::PointAttribute& attribute, int componentType, Bytes& out)
-{
-    using Reader = bool (*)(const draco::Mesh&, const draco::PointAttribute&, Bytes&);
+    using Reader = bool (*)(const draco::Mesh&, const draco::PointAttribute&, std::vector<unsigned char>&);
     // From GL_BYTE on; glTF does not know the fifth, GL_INT.
     constexpr Reader readers[] = {readValues<std::int8_t>,
                                   readValues<std::uint8_t>,
@@ -83,59 +75,44 @@ bool readValues(const draco::Mesh& mesh, const draco::PointAttribute& attribute,
                                   nullptr,
                                   readValues<std::uint32_t>,
                                   readValues<float>};
-    return readers[componentType - 5120](mesh, attribute, out);
+    if (out.vertices != mesh.num_points())
+        return fault(name, std::to_string(out.vertices) + " vertices as in " + elementName("accessors", out.accessor),
+                     mesh.num_points());
+    const draco::PointAttribute* const attribute = mesh.GetAttributeByUniqueId(out.uniqueId);
+    if (!attribute) return fault(name, "an attribute of the Draco mesh", "number " + std::to_string(out.uniqueId));
+    if (out.components > 4 || static_cast<std::size_t>(attribute->num_components()) != out.components)
+        return fault(name, std::to_string(out.components) + " components in the Draco mesh",
+                     attribute->num_components());
+    if (!readers[out.componentType - 5120](mesh, *attribute, out.values))
+        return fault(name, "values of the accessor's component type in the Draco mesh", "others");
+    return std::nullopt;
 }
 
 } // namespace
 
-Result<DracoMesh> DracoMesh::decode(const unsigned char* data, std::size_t bytes, std::size_t faces)
+Result<std::vector<std::uint32_t>> decodeDraco(const unsigned char* data, std::size_t bytes, std::size_t faces,
+                                               const std::string& name, std::vector<DracoAttribute>& attributes)
 {
     const char* const stream = reinterpret_cast<const char*>(data);
     const std::optional<std::uint32_t> found = facesOfHeader(stream, bytes);
-    if (!found) return unexpected("a Draco mesh of version 2.2", "other data");
-    if (*found != faces)
-        return unexpected("a Draco mesh of " + std::to_string(faces) + " triangles", std::to_string(*found));
+    if (!found) return fault(name, "a Draco mesh of version 2.2", "other data");
+    if (*found != faces) return fault(name, "a Draco mesh of " + std::to_string(faces) + " triangles", *found);
     draco::DecoderBuffer buffer;
     buffer.Init(stream, bytes);
     draco::Decoder decoder;
     auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
-    if (!decoded.ok()) return unexpected("data that Draco can decode", printable(decoded.status().error_msg_string()));
-    std::unique_ptr<draco::Mesh> mesh = std::move(decoded).value();
-    if (!mesh || mesh->num_faces() != faces) return unexpected("data that Draco can decode", "other data");
-    return DracoMesh(std::move(mesh));
-}
-
-DracoMesh::DracoMesh(std::unique_ptr<draco::Mesh> mesh) : _mesh(std::move(mesh)) {}
-DracoMesh::DracoMesh(DracoMesh&&) noexcept = default;
-DracoMesh& DracoMesh::operator=(DracoMesh&&) noexcept = default;
-DracoMesh::~DracoMesh() = default;
-
-std::size_t DracoMesh::vertices() const
-{
-    return _mesh->num_points();
-}
-
-std::vector<std::uint32_t> DracoMesh::indices() const
-{
+    if (!decoded.ok()) return fault(name, "data that Draco can decode", printable(decoded.status().error_msg_string()));
+    const std::unique_ptr<draco::Mesh> mesh = std::move(decoded).value();
+    if (!mesh || mesh->num_faces() != faces) return fault(name, "data that Draco can decode", "other data");
+    for (DracoAttribute& attribute : attributes)
+        if (const auto error = readAttribute(*mesh, name + ".attributes." + printable(attribute.name), attribute))
+            return *error;
     std::vector<std::uint32_t> indices;
-    indices.reserve(_mesh->num_faces() * std::size_t(3));
-    for (draco::FaceIndex face(0); face < _mesh->num_faces(); ++face)
-        for (const draco::PointIndex& point : _mesh->face(face))
+    indices.reserve(faces * 3);
+    for (draco::FaceIndex face(0); face < mesh->num_faces(); ++face)
+        for (const draco::PointIndex& point : mesh->face(face))
             indices.push_back(point.value());
     return indices;
-}
-
-Result<Bytes> DracoMesh::attribute(std::uint32_t uniqueId, std::size_t components, int componentType) const
-{
-    const draco::PointAttribute* const attribute = _mesh->GetAttributeByUniqueId(uniqueId);
-    if (!attribute) return unexpected("an attribute of the Draco mesh", "number " + std::to_string(uniqueId));
-    if (components > 4 || static_cast<std::size_t>(attribute->num_components()) != components)
-        return unexpected(std::to_string(components) + " components in the Draco mesh",
-                          std::to_string(attribute->num_components()));
-    Bytes out;
-    if (!readValues(*_mesh, *attribute, componentType, out))
-        return unexpected("values of the accessor's component type in the Draco mesh", "others");
-    return out;
 }
 
 } // namespace osgGpuAnimation::gltf

@@ -20,8 +20,8 @@ public:
     {
         // The result is ignored: it is an error for sampling factors without a name in libturbojpeg, which decodes
         // them all the same. The size stays 0 where the header is damaged.
-        int sampling = 0;
-        if (_turbo) tjDecompressHeader3(_turbo, _bytes.data(), _bytes.size(), &_width, &_height, &sampling, &_space);
+        int sampling = 0, space = 0;
+        if (_turbo) tjDecompressHeader3(_turbo, _bytes.data(), _bytes.size(), &_width, &_height, &sampling, &space);
     }
     ~JpegReader()
     {
@@ -32,13 +32,11 @@ public:
     bool hasHeader() const { return _width > 0 && _height > 0; }
     std::size_t width() const { return static_cast<std::size_t>(_width); }
     std::size_t height() const { return static_cast<std::size_t>(_height); }
-    bool isGrey() const { return _space == TJCS_GRAY; }
-
     bool readRows(osg::Image& image)
     {
         const int result = tjDecompress2(_turbo, _bytes.data(), _bytes.size(), image.data(), _width,
-                                         static_cast<int>(image.getRowSizeInBytes()), _height,
-                                         isGrey() ? TJPF_GRAY : TJPF_RGB, TJFLAG_BOTTOMUP | TJFLAG_LIMITSCANS);
+                                         static_cast<int>(image.getRowSizeInBytes()), _height, TJPF_RGB,
+                                         TJFLAG_BOTTOMUP | TJFLAG_LIMITSCANS);
         return result == 0 ||
                tjGetErrorCode(_turbo) == TJERR_WARNING; // a cut-off file: decodes the pixels before the cut
     }
@@ -48,7 +46,6 @@ private:
     tjhandle _turbo;
     int _width = 0;
     int _height = 0;
-    int _space = -1;
 };
 
 } // namespace
@@ -65,8 +62,7 @@ Result<osg::ref_ptr<osg::Image>> decodeJpeg(const Bytes& bytes)
 {
     JpegReader reader(bytes);
     if (!reader.hasHeader()) return damagedPicture();
-    const osg::ref_ptr<osg::Image> image =
-        newImage(reader.width(), reader.height(), reader.isGrey() ? GL_LUMINANCE : GL_RGB, GL_UNSIGNED_BYTE);
+    const osg::ref_ptr<osg::Image> image = newImage(reader.width(), reader.height(), GL_RGB, GL_UNSIGNED_BYTE);
     if (!image->data() || !reader.readRows(*image)) return damagedPicture();
     return image;
 }

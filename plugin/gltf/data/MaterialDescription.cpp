@@ -7,25 +7,6 @@
 namespace osgGpuAnimation::gltf
 {
 
-namespace
-{
-
-MaterialDescription::Map describeMap(const tinygltf::Model& model, const MaterialMap& map)
-{
-    const std::string member = map.member;
-    MaterialDescription::Map description;
-    description.use = member.substr(0, member.rfind("Texture"));
-    description.image = elementOf(model.textures, map.texture).source;
-    if (description.image < 0) return description;
-    const tinygltf::Image& image = elementOf(model.images, description.image);
-    if (image.image.empty()) return description;
-    description.width = image.width;
-    description.height = image.height;
-    return description;
-}
-
-} // namespace
-
 std::vector<MaterialDescription> describeMaterials(const tinygltf::Model& model)
 {
     std::vector<MaterialDescription> descriptions;
@@ -38,7 +19,14 @@ std::vector<MaterialDescription> describeMaterials(const tinygltf::Model& model)
         description.doubleSided = material.doubleSided;
         description.unlit = material.extensions.count("KHR_materials_unlit") > 0;
         for (const MaterialMap& map : mapsOf(material, true).maps)
-            description.maps.push_back(describeMap(model, map));
+        {
+            const std::string member = map.member;
+            const int source = elementOf(model.textures, map.texture).source;
+            const tinygltf::Image none, &image = source < 0 ? none : elementOf(model.images, source);
+            const bool isRead = !image.image.empty();
+            description.maps.push_back({member.substr(0, member.rfind("Texture")), source, isRead ? image.width : 0,
+                                        isRead ? image.height : 0});
+        }
     }
     return descriptions;
 }

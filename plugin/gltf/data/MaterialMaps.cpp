@@ -81,43 +81,16 @@ void readSpecularGlossiness(const tinygltf::Value& extension, PbrMaterial& outMa
     outMaterial.isSpecularGlossiness = true;
 }
 
-class MapReader
+/// The number of these coordinates, which are added if there is room; -1: a vertex has no room for them.
+int numberOf(const TextureCoordinates& coordinates, std::vector<TextureCoordinates>& all)
 {
-public:
-    MapReader(MaterialMaps& maps, const std::function<bool(const std::string&)>& isAnimated)
-        : _maps(maps), _isAnimated(isAnimated)
-    {
-    }
-
-    /// path: of the object that has the member, with a slash, or empty. use: of the map if its coordinates have room.
-    /// True if the map is shown.
-    bool add(const std::string& path, const char* member, const tinygltf::TextureInfo& texture,
-             PbrMaterial::Map PbrMaterial::*place, bool isColor, MapUse use = MapUse::Shown)
-    {
-        if (texture.index < 0) return false;
-        const std::string animated = _isAnimated && _isAnimated(path + member) ? path + member : "";
-        const int number = use == MapUse::Shown ? numberOf(TextureCoordinates(texture, animated)) : -1;
-        if (use == MapUse::Shown && number < 0) use = MapUse::NoCoordinates;
-        _maps.maps.push_back({member, place, texture.index, isColor, use, number, animated});
-        return use == MapUse::Shown;
-    }
-
-private:
-    /// -1: a vertex has no room for them.
-    int numberOf(const TextureCoordinates& coordinates)
-    {
-        std::vector<TextureCoordinates>& all = _maps.coordinates;
-        const auto known = std::find(all.begin(), all.end(), coordinates);
-        const int number = static_cast<int>(known - all.begin());
-        if (known != all.end()) return number;
-        if (all.size() == MaterialMaps::maxCoordinates) return -1;
-        all.push_back(coordinates);
-        return number;
-    }
-
-    MaterialMaps& _maps;
-    const std::function<bool(const std::string&)>& _isAnimated;
-};
+    const auto known = std::find(all.begin(), all.end(), coordinates);
+    const int number = static_cast<int>(known - all.begin());
+    if (known != all.end()) return number;
+    if (all.size() == MaterialMaps::maxCoordinates) return -1;
+    all.push_back(coordinates);
+    return number;
+}
 
 } // namespace
 
@@ -142,22 +115,33 @@ MaterialMaps mapsOf(const tinygltf::Material& material, bool allMaps,
                     const std::function<bool(const std::string&)>& isAnimated)
 {
     MaterialMaps maps;
-    MapReader reader(maps, isAnimated);
+    // path: of the object that has the member, with a slash, or empty. use: of the map if its coordinates have room.
+    // True if the map is shown.
+    const auto add = [&](const std::string& path, const char* member, const tinygltf::TextureInfo& texture,
+                         PbrMaterial::Map PbrMaterial::*place, bool isColor, MapUse use = MapUse::Shown)
+    {
+        if (texture.index < 0) return false;
+        const std::string animated = isAnimated && isAnimated(path + member) ? path + member : "";
+        const int number =
+            use == MapUse::Shown ? numberOf(TextureCoordinates(texture, animated), maps.coordinates) : -1;
+        if (use == MapUse::Shown && number < 0) use = MapUse::NoCoordinates;
+        maps.maps.push_back({member, place, texture.index, isColor, use, number, animated});
+        return use == MapUse::Shown;
+    };
     const std::string core = "pbrMetallicRoughness/";
     const tinygltf::PbrMetallicRoughness& pbr = material.pbrMetallicRoughness;
     const tinygltf::Value& converted = extensionOf(material.extensions, specularGlossiness);
     const bool isConverted = converted.IsObject();
     if (isConverted)
-        reader.add("", "diffuseTexture", textureOf(converted, "diffuseTexture"), &PbrMaterial::baseColorMap, true);
+        add("", "diffuseTexture", textureOf(converted, "diffuseTexture"), &PbrMaterial::baseColorMap, true);
     else
-        reader.add(core, "baseColorTexture", pbr.baseColorTexture, &PbrMaterial::baseColorMap, true);
+        add(core, "baseColorTexture", pbr.baseColorTexture, &PbrMaterial::baseColorMap, true);
     if (!allMaps) return maps;
-    reader.add("", "normalTexture", plainInfo(material.normalTexture), &PbrMaterial::normalMap, false);
+    add("", "normalTexture", plainInfo(material.normalTexture), &PbrMaterial::normalMap, false);
     if (!isConverted)
-        reader.add(core, "metallicRoughnessTexture", pbr.metallicRoughnessTexture, &PbrMaterial::metallicRoughnessMap,
-                   false);
-    reader.add("", "emissiveTexture", material.emissiveTexture, &PbrMaterial::emissiveMap, true);
-    reader.add("", "occlusionTexture", plainInfo(material.occlusionTexture), &PbrMaterial::occlusionMap, false);
+        add(core, "metallicRoughnessTexture", pbr.metallicRoughnessTexture, &PbrMaterial::metallicRoughnessMap, false);
+    add("", "emissiveTexture", material.emissiveTexture, &PbrMaterial::emissiveMap, true);
+    add("", "occlusionTexture", plainInfo(material.occlusionTexture), &PbrMaterial::occlusionMap, false);
     PbrMaterial factors;
     readMaterialExtensions(material, factors);
     int units = 0;
@@ -170,7 +154,7 @@ MaterialMaps mapsOf(const tinygltf::Material& material, bool allMaps,
                                                                    : MapUse::NoTextureUnit;
         const tinygltf::TextureInfo texture = textureOf(extensionOf(material.extensions, map.extension), map.member);
         const std::string path = "extensions/" + std::string(map.extension) + '/';
-        if (reader.add(path, map.member, texture, map.place, map.isColor, use)) ++units;
+        if (add(path, map.member, texture, map.place, map.isColor, use)) ++units;
     }
     return maps;
 }

@@ -21,19 +21,14 @@ const tinygltf::Value& memberOf(const tinygltf::ExtensionMap& extensions, const 
     return extension.IsObject() ? extension.Get(member) : extension;
 }
 
-/// Takes the material's coordinates if they begin like the known ones, or the known ones like these.
-bool takeCoordinates(const std::vector<TextureCoordinates>& wanted, std::vector<TextureCoordinates>& known)
-{
-    const std::size_t common = std::min(wanted.size(), known.size());
-    if (!std::equal(wanted.begin(), wanted.begin() + static_cast<std::ptrdiff_t>(common), known.begin())) return false;
-    if (wanted.size() > known.size()) known = wanted;
-    return true;
-}
-
-/// False, and no change, if the vertices cannot have the coordinates of the material too.
+/// False, and no change, if the vertices cannot have the coordinates of the material, too: they begin like the known
+/// ones, or the known ones like these.
 bool add(const tinygltf::Material& material, const MaterialMaps& maps, PrimitiveMaterials& materials)
 {
-    if (!takeCoordinates(maps.coordinates, materials.coordinates)) return false;
+    const std::vector<TextureCoordinates>& wanted = maps.coordinates;
+    const auto common = static_cast<std::ptrdiff_t>(std::min(wanted.size(), materials.coordinates.size()));
+    if (!std::equal(wanted.begin(), wanted.begin() + common, materials.coordinates.begin())) return false;
+    if (wanted.size() > materials.coordinates.size()) materials.coordinates = wanted;
     materials.hasNormalMap |= maps.hasNormalMap();
     materials.isBlended |= material.alphaMode == "BLEND";
     materials.isTransparent |= materials.isBlended || material.extensions.count("KHR_materials_transmission") > 0;
@@ -56,12 +51,13 @@ std::vector<std::string> variantNames(const tinygltf::Model& model)
     return names;
 }
 
-void forEachVariantMaterial(const tinygltf::Primitive& primitive, const std::function<void(int)>& visit)
+void forEachVariantMaterial(const tinygltf::Primitive& primitive,
+                            const std::function<void(int material, const tinygltf::Value& variants)>& visit)
 {
     const tinygltf::Value& mappings = memberOf(primitive.extensions, "mappings");
     for (std::size_t i = 0; i < mappings.ArrayLen(); ++i)
         if (const tinygltf::Value& mapping = mappings.Get(static_cast<int>(i)); mapping.Has("material"))
-            visit(mapping.Get("material").GetNumberAsInt());
+            visit(mapping.Get("material").GetNumberAsInt(), mapping.Get("variants"));
 }
 
 PrimitiveMaterials materialsOf(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
@@ -72,13 +68,8 @@ PrimitiveMaterials materialsOf(const tinygltf::Model& model, const tinygltf::Pri
     { return add(elementOf(model.materials, index), maps.of(index), materials); };
     materials.own = primitive.material;
     if (materials.own >= 0) addMaterial(materials.own);
-    const tinygltf::Value& mappings = memberOf(primitive.extensions, "mappings");
-    for (std::size_t i = 0; i < mappings.ArrayLen(); ++i)
+    const auto addVariants = [&](int material, const tinygltf::Value& variants)
     {
-        const tinygltf::Value& mapping = mappings.Get(static_cast<int>(i));
-        if (!mapping.Has("material")) continue;
-        const int material = mapping.Get("material").GetNumberAsInt();
-        const tinygltf::Value& variants = mapping.Get("variants");
         const bool fits = addMaterial(material);
         for (std::size_t v = 0; v < variants.ArrayLen(); ++v)
         {
@@ -88,7 +79,8 @@ PrimitiveMaterials materialsOf(const tinygltf::Model& model, const tinygltf::Pri
             else
                 materials.withoutCoordinates.push_back(variant);
         }
-    }
+    };
+    forEachVariantMaterial(primitive, addVariants);
     return materials;
 }
 

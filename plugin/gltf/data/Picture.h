@@ -1,17 +1,28 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "gltf/data/PictureHeader.h"
-
 #include <osgGpuAnimation/math/Result.h>
 
 #include <osg/Image>
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
 namespace osgGpuAnimation::gltf
 {
+
+/// Format and size of a picture before it is decoded.
+struct PictureHeader
+{
+    static constexpr std::uint32_t maxPixelsPerSide = 16384;
+
+    std::string mimeType; ///< by the bytes: image/png, image/jpeg or image/webp
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::size_t decodedBytes = 0; ///< with four channels of the depth that the file has
+};
 
 // PNG, JPEG and WebP, decoded by libpng, libjpeg-turbo and libwebp: OSG's own readers leak memory over damaged pictures
 // and do not know WebP.
@@ -26,8 +37,8 @@ Result<PictureHeader> readPictureHeader(const std::vector<unsigned char>& bytes)
 
 /// Decodes a picture whose header was read, the first row at the bottom; callable on any thread. Ignores colour
 /// profiles, gamma and orientation (glTF 2.0, section 3.8.2.1).
-/// A PNG keeps its 8 or 16 bits a channel; a palette becomes RGB, transparent colours an alpha channel. A JPEG becomes
-/// grey or RGB; if its data is cut off, it keeps the pixels before the cut. A WebP becomes RGB or RGBA.
+/// All become RGB or RGBA: GL's core profile has no grey formats. A PNG keeps its 8 or 16 bits a channel; transparent
+/// colours become an alpha channel. A JPEG whose data is cut off keeps the pixels before the cut.
 /// Error: the picture is damaged.
 Result<osg::ref_ptr<osg::Image>> decodePicture(const std::vector<unsigned char>& bytes);
 

@@ -12,18 +12,6 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
-/// The schema has checked its members.
-const tinygltf::Value& transformOf(const tinygltf::TextureInfo& texture)
-{
-    return extensionOf(texture.extensions, "KHR_texture_transform");
-}
-
-int setOf(const tinygltf::TextureInfo& texture)
-{
-    const tinygltf::Value& transform = transformOf(texture);
-    return transform.Has("texCoord") ? transform.Get("texCoord").GetNumberAsInt() : texture.texCoord;
-}
-
 osg::Vec2d pairOf(const tinygltf::Value& transform, const char* member, const osg::Vec2d& otherwise)
 {
     if (!transform.Has(member)) return otherwise;
@@ -41,10 +29,12 @@ const tinygltf::Value& extensionOf(const tinygltf::ExtensionMap& extensions, con
 }
 
 TextureCoordinates::TextureCoordinates(const tinygltf::TextureInfo& texture, std::string animated)
-    : _set(setOf(texture)), _animated(std::move(animated))
+    : _set(texture.texCoord), _animated(std::move(animated))
 {
     static const tinygltf::Value none;
-    const tinygltf::Value& transform = _animated.empty() ? transformOf(texture) : none;
+    const tinygltf::Value& given = extensionOf(texture.extensions, "KHR_texture_transform"); // checked by the schema
+    if (given.Has("texCoord")) _set = given.Get("texCoord").GetNumberAsInt();
+    const tinygltf::Value& transform = _animated.empty() ? given : none;
     // Counter-clockwise as the viewer sees the picture, whose v runs down.
     const double angle = transform.Has("rotation") ? transform.Get("rotation").GetNumberAsDouble() : 0.0;
     const osg::Vec2d scale = pairOf(transform, "scale", osg::Vec2d(1.0, 1.0));

@@ -42,11 +42,11 @@ std::optional<Error> validateBufferViews(const Model& model)
                          "a uri or a BIN chunk with the data of " + elementName("bufferViews", i), "neither");
         if (view.byteOffset > size)
             return fault(elementName("bufferViews", i) + ".byteOffset",
-                         "at most the buffer's " + std::to_string(size) + " bytes", std::to_string(view.byteOffset));
+                         "at most the buffer's " + std::to_string(size) + " bytes", view.byteOffset);
         if (view.byteLength > size - view.byteOffset)
             return fault(elementName("bufferViews", i) + ".byteLength",
                          "at most the " + std::to_string(size - view.byteOffset) + " bytes left in the buffer",
-                         std::to_string(view.byteLength));
+                         view.byteLength);
     }
     return std::nullopt;
 }
@@ -57,7 +57,7 @@ std::optional<Error> validateRun(const Model& model, const Run& run, const std::
     const std::string viewName = elementName("bufferViews", run.bufferView);
     if (run.stride < run.elementBytes)
         return fault(name, "a byteStride of " + viewName + " of at least " + std::to_string(run.elementBytes),
-                     std::to_string(run.stride));
+                     run.stride);
     if ((view.byteOffset + run.byteOffset) % run.alignment != 0 || run.stride % run.alignment != 0)
         return fault(name + ".byteOffset", "elements aligned to " + std::to_string(run.alignment) + " bytes",
                      std::to_string(view.byteOffset + run.byteOffset) + " in the buffer, stride " +
@@ -108,7 +108,7 @@ std::optional<Error> validateSparseIndices(const Model& model, const Run& run, s
     for (std::size_t i = 0; i < run.count; ++i)
     {
         const std::size_t index = indexAt(data, run.elementBytes, i);
-        if (index >= count) return fault(name, "indices below " + std::to_string(count), std::to_string(index));
+        if (index >= count) return fault(name, "indices below " + std::to_string(count), index);
         if (i > 0 && index <= previous)
             return fault(name, "indices that increase", std::to_string(index) + " after " + std::to_string(previous));
         previous = index;
@@ -122,8 +122,7 @@ std::optional<Error> validateSparse(const Model& model, const tinygltf::Accessor
 {
     const auto& sparse = accessor.sparse;
     const std::size_t count = static_cast<std::size_t>(sparse.count);
-    if (count > accessor.count)
-        return fault(name + ".count", "at most " + std::to_string(accessor.count), std::to_string(count));
+    if (count > accessor.count) return fault(name + ".count", "at most " + std::to_string(accessor.count), count);
     const std::size_t indexBytes = componentBytes(sparse.indices.componentType);
     const Run indices = {sparse.indices.bufferView,
                          static_cast<std::size_t>(sparse.indices.byteOffset),
@@ -262,10 +261,9 @@ std::optional<Error> validateAccessors(Model& model, std::size_t first, MemoryBu
             error = validateBase(model, accessor, elementName("accessors", i), nonFinite);
         else if (!implied.take(bytes))
             error = fault(elementName("accessors", i) + ".count",
-                          "at most " + std::to_string(implied.limit()) + " bytes of zeros without data in all",
-                          std::to_string(bytes));
+                          "at most " + std::to_string(implied.limit()) + " bytes of zeros without data in all", bytes);
         if (!error && !budget.take(bytes))
-            error = fault(elementName("accessors", i) + ".count", budget.limitText(), std::to_string(bytes));
+            error = fault(elementName("accessors", i) + ".count", budget.limitText(), bytes);
         if (!error && accessor.sparse.isSparse)
             error = validateSparse(model, accessor, elementName("accessors", i) + ".sparse", nonFiniteSparse);
         if (error) return error;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/data/ValidateLods.h"
 
+#include "gltf/data/TextureCoordinates.h"
 #include "gltf/file/Elements.h"
-
 #include <algorithm>
 #include <optional>
 #include <string>
@@ -21,9 +21,9 @@ constexpr double firstShare = 0.25;
 std::vector<int> idsOf(const tinygltf::Node& node)
 {
     std::vector<int> ids;
-    const auto found = node.extensions.find(lodExtension);
-    if (found == node.extensions.end() || !found->second.Has("ids")) return ids;
-    const tinygltf::Value& list = found->second.Get("ids");
+    const tinygltf::Value& extension = extensionOf(node.extensions, lodExtension);
+    if (!extension.Has("ids")) return ids;
+    const tinygltf::Value& list = extension.Get("ids");
     for (std::size_t i = 0; i < list.ArrayLen(); ++i)
         ids.push_back(list.Get(static_cast<int>(i)).GetNumberAsInt());
     return ids;
@@ -58,106 +58,95 @@ class LodValidation
 {
 public:
     LodValidation(const tinygltf::Model& model, std::size_t maxDepth)
-        : _model(model), _maxDepth(maxDepth), _depths(model.nodes.size(), 1), _heights(model.nodes.size(), 1),
-          _parents(model.nodes.size(), -1), _roots(model.nodes.size(), -1), _parts(model.nodes.size()),
-          _isLevel(model.nodes.size(), false), _hasGroup(model.nodes.size(), false), _scenesOf(model.nodes.size())
+        : _model(model), _maxDepth(maxDepth), _nodes(model.nodes.size())
     {
-        for (std::size_t node = 0; node < model.nodes.size(); ++node)
-            for (const int child : model.nodes[node].children)
-                _parents[at(child)] = static_cast<int>(node);
-        for (std::size_t node = 0; node < model.nodes.size(); ++node)
-            if (_parents[node] < 0) _order.push_back(static_cast<int>(node));
+        const int count = static_cast<int>(_nodes.size());
+        for (int node = 0; node < count; ++node)
+            for (const int child : elementOf(model.nodes, node).children)
+                at(child).parent = node;
+        for (int node = 0; node < count; ++node)
+            if (at(node).parent < 0) _order.push_back(node);
         for (std::size_t next = 0; next < _order.size(); ++next)
         {
-            const int node = _order[next];
-            const int parent = _parents[at(node)];
-            _roots[at(node)] = parent < 0 ? node : _roots[at(parent)];
-            if (parent >= 0) _depths[at(node)] = _depths[at(parent)] + 1;
-            const std::vector<int>& children = model.nodes[at(node)].children;
+            const int node = _order[next], parent = at(node).parent;
+            at(node).root = parent < 0 ? node : at(parent).root;
+            if (parent >= 0) at(node).depth = at(parent).depth + 1;
+            const std::vector<int>& children = elementOf(model.nodes, node).children;
             _order.insert(_order.end(), children.begin(), children.end());
         }
         for (auto node = _order.rbegin(); node != _order.rend(); ++node)
-            if (const int parent = _parents[at(*node)]; parent >= 0)
-                _heights[at(parent)] = std::max(_heights[at(parent)], _heights[at(*node)] + 1);
+            if (const int parent = at(*node).parent; parent >= 0)
+                at(parent).height = std::max(at(parent).height, at(*node).height + 1);
         for (std::size_t scene = 0; scene < model.scenes.size(); ++scene)
             for (const int node : model.scenes[scene].nodes)
-                _scenesOf[at(node)].push_back(scene);
+                at(node).scenes.push_back(scene);
     }
 
     const std::vector<int>& order() const { return _order; } ///< all nodes, parents first
 
     /// Takes the node's list, or returns its fault.
-    std::optional<Error> take(int node)
+    std::optional<Error> take(int index)
     {
-        if (_parents[at(node)] >= 0 && _parts[at(_parents[at(node)])]) _parts[at(node)] = true;
-        const std::vector<int> ids = idsOf(_model.nodes[at(node)]);
+        Node& node = at(index);
+        if (node.parent >= 0 && at(node.parent).isPart) node.isPart = true;
+        const std::vector<int> ids = idsOf(elementOf(_model.nodes, index));
         if (ids.empty()) return std::nullopt;
-        const std::string name = elementName("nodes", at(node)) + ".extensions.MSFT_lod";
-        if (_parts[at(node)] || _isLevel[at(_roots[at(node)])])
+        const std::string name = elementName("nodes", index) + ".extensions.MSFT_lod";
+        if (node.isPart || at(node.root).isLevel)
             return fault(name, "no levels of detail within others",
-                         elementName("nodes", at(node)) + ", a level or below one");
+                         elementName("nodes", index) + ", a level or below one");
         for (std::size_t i = 0; i < ids.size(); ++i)
-            if (std::optional<Error> error = check(node, ids[i], elementName(name + ".ids", i)))
-            {
-                for (std::size_t taken = 0; taken < i; ++taken)
-                    mark(ids[taken], false);
-                return error;
-            }
-            else
-                mark(ids[i], true);
-        _parts[at(node)] = true;
-        _hasGroup[at(_roots[at(node)])] = true;
+        {
+            const std::optional<Error> error = check(index, ids[i], elementName(name + ".ids", i));
+            for (std::size_t taken = 0; error && taken < i; ++taken)
+                at(ids[taken]).isLevel = at(ids[taken]).isPart = false;
+            if (error) return error;
+            at(ids[i]).isLevel = at(ids[i]).isPart = true;
+        }
+        node.isPart = true;
+        at(node.root).hasGroup = true;
         return std::nullopt;
     }
 
 private:
-    static std::size_t at(int node) { return static_cast<std::size_t>(node); }
-
-    void mark(int node, bool isLevel)
+    struct Node
     {
-        _isLevel[at(node)] = isLevel;
-        _parts[at(node)] = isLevel;
-    }
+        int parent = -1; ///< -1: a root
+        int root = -1;   ///< of its tree
+        std::size_t depth = 1;
+        std::size_t height = 1;          ///< 1 without children
+        bool isPart = false;             ///< it is, or is below, a node of an accepted group
+        bool isLevel = false;            ///< an accepted list names it
+        bool hasGroup = false;           ///< it is a root with a group at or below it
+        std::vector<std::size_t> scenes; ///< those that name it, ascending
+    };
 
-    std::optional<Error> check(int node, int level, const std::string& name) const
+    Node& at(int node) { return elementOf(_nodes, node); }
+    std::optional<Error> check(int index, int levelIndex, const std::string& name)
     {
-        const std::string found = elementName("nodes", at(level));
-        if (level == node || level == _roots[at(node)])
+        const Node &node = at(index), &level = at(levelIndex);
+        const std::string found = elementName("nodes", levelIndex);
+        if (levelIndex == index || levelIndex == node.root)
             return fault(name, "a node that is not the node itself or above it", found);
-        if (_isLevel[at(level)]) return fault(name, "a node that is a level once", found + " again");
-        if (_parents[at(level)] >= 0 && _parents[at(level)] != _parents[at(node)])
-            return fault(name, "a node without a parent",
-                         found + ", a child of " + elementName("nodes", at(_parents[at(level)])));
-        if (_parts[at(level)] || (_parents[at(level)] < 0 && _hasGroup[at(level)]))
+        if (level.isLevel) return fault(name, "a node that is a level once", found + " again");
+        if (level.parent >= 0 && level.parent != node.parent)
+            return fault(name, "a node without a parent", found + ", a child of " + elementName("nodes", level.parent));
+        if (level.isPart || (level.parent < 0 && level.hasGroup))
             return fault(name, "a node without levels of detail at or below it", found);
-        if (_depths[at(node)] + _heights[at(level)] - 1 > _maxDepth)
+        if (node.depth + level.height - 1 > _maxDepth)
             return fault(name, "a depth of at most " + std::to_string(_maxDepth) + " nodes (limit maxNodeDepth)",
-                         std::to_string(_depths[at(node)] + _heights[at(level)] - 1));
-        for (const std::size_t scene : _scenesOf[at(level)])
-            if (!isIn(node, scene))
+                         node.depth + level.height - 1);
+        for (const std::size_t scene : level.scenes)
+            if (!std::binary_search(node.scenes.begin(), node.scenes.end(), scene))
                 return fault(name, "a node in one place",
                              found + ", which " + elementName("scenes", scene) + " shows by itself");
         return std::nullopt;
     }
 
-    bool isIn(int node, std::size_t scene) const
-    {
-        const std::vector<std::size_t>& scenes = _scenesOf[at(node)];
-        return std::binary_search(scenes.begin(), scenes.end(), scene);
-    }
-
     const tinygltf::Model& _model;
     std::size_t _maxDepth;
-    std::vector<std::size_t> _depths;  ///< by node: 1 for roots
-    std::vector<std::size_t> _heights; ///< by node: 1 for nodes without children
+    std::vector<Node> _nodes;
     std::vector<int> _order;
-    std::vector<int> _parents; ///< -1 for roots
-    std::vector<int> _roots;   ///< one per node: the root of its tree
-    // One per node:
-    std::vector<bool> _parts;                        ///< it is, or is below, a node of an accepted group
-    std::vector<bool> _isLevel;                      ///< an accepted list names it
-    std::vector<bool> _hasGroup;                     ///< it is a root with a group at or below it
-    std::vector<std::vector<std::size_t>> _scenesOf; ///< the scenes that name it, ascending
 };
 
 void noteMaterials(tinygltf::Model& model, Report& report)

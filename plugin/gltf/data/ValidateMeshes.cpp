@@ -13,6 +13,7 @@
 #include <limits>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace osgGpuAnimation::gltf
@@ -25,27 +26,113 @@ using Model = tinygltf::Model;
 using Kind = AttributeSemantic::Kind;
 using Attributes = std::map<std::string, int>;
 
-bool isQuantized(const Model& model)
+// The rounding of up to sixteen floats, and less than one step of 16 bits.
+const double sumRounding = 1e-6;
+// Rounding weights to bytes one by one costs at most this much: mended without a warning.
+const double usualSumFault = 0.02;
+
+/// The joints that the vertices of one mesh refer to.
+struct JointDemand
 {
-    return std::find(model.extensionsUsed.begin(), model.extensionsUsed.end(), "KHR_mesh_quantization") !=
-           model.extensionsUsed.end();
+    /// By primitive with joints: its number, and one more than the largest joint that has a weight.
+    std::vector<std::pair<std::size_t, std::size_t>> jointsWithWeight;
+    std::size_t jointsInAll = 0;
+    bool allPrimitives = true;                                     ///< have joints
+    std::size_t minSkin = std::numeric_limits<std::size_t>::max(); ///< joints of the smallest skin of the mesh
+
+    void add(std::size_t primitive, const std::vector<FileInfluences>& influences)
+    {
+        if (influences.empty()) allPrimitives = false;
+        std::size_t withWeight = 0;
+        for (const FileInfluences& set : influences)
+            for (std::size_t i = 0; i < set.joints.size(); ++i)
+            {
+                const std::size_t joints = static_cast<std::size_t>(set.joints[i]) + 1;
+                jointsInAll = std::max(jointsInAll, joints);
+                if (set.weights[i] > 0.0f) withWeight = std::max(withWeight, joints);
+            }
+        if (!influences.empty()) jointsWithWeight.emplace_back(primitive, withWeight);
+    }
+};
+
+struct MendedWeights
+{
+    bool any = false;
+    std::optional<std::string> fault; ///< the first one that is more than rounding one by one
+};
+
+/// Makes the weights of each vertex non-negative with a sum of 1.
+MendedWeights mendWeights(std::vector<FileInfluences>& sets)
+{
+    MendedWeights mended;
+    const std::size_t vertices = sets.empty() ? 0 : sets[0].weights.size() / 4;
+    for (std::size_t v = 0; v < vertices; ++v)
+    {
+        bool negative = false;
+        double sum = 0.0;
+        for (const FileInfluences& set : sets)
+            for (std::size_t i = 4 * v; i < 4 * v + 4; ++i)
+            {
+                negative = negative || set.weights[i] < 0.0f;
+                sum += std::max(set.weights[i], 0.0f);
+            }
+        const double sumFault = std::abs(sum - 1.0);
+        if (!negative && sumFault <= sumRounding) continue;
+        mended.any = true;
+        for (FileInfluences& set : sets)
+            for (std::size_t i = 4 * v; i < 4 * v + 4; ++i)
+                set.weights[i] = sum > 0.0 ? static_cast<float>(std::max(set.weights[i], 0.0f) / sum) : 0.0f;
+        if (sum == 0.0) sets[0].weights[4 * v] = 1.0f;
+        if (!mended.fault && (negative || sumFault > usualSumFault))
+            mended.fault = "vertex " + std::to_string(v) + " has " +
+                           (negative    ? "a negative weight"
+                            : sum > 0.0 ? "weights that do not sum to 1"
+                                        : "no weight at all");
+    }
+    return mended;
 }
 
-/// Checks one primitive after another and remembers its findings about shared accessors and materials.
+/// Checks the primitives, then the nodes, whose skins decide which joints the primitives may have.
 class MeshValidation
 {
 public:
-    MeshValidation(const Model& model, MemoryBudget& budget, Report& report)
-        : _model(model), _budget(budget), _report(report), _quantized(isQuantized(model)),
-          _maxIndices(model.accessors.size(), unknown), _coordinates(materialCoordinates(model))
+    MeshValidation(Model& model, MemoryBudget& budget, Report& report)
+        : _model(model), _budget(budget), _reads(budget.limit()), _report(report),
+          _quantized(contains(model.extensionsUsed, "KHR_mesh_quantization")),
+          _maxIndices(model.accessors.size(), unknown), _coordinates(materialCoordinates(model)),
+          _demands(model.meshes.size())
     {
     }
 
-    std::optional<Error> validate(const tinygltf::Primitive& primitive, const PrimitiveName& name)
+    std::optional<Error> run()
     {
-        const auto position = primitive.attributes.find("POSITION");
-        if (position == primitive.attributes.end()) return std::nullopt; // not drawn, checkDocumentRules() has warned
-        const std::size_t vertices = accessorOf(position->second).count;
+        std::optional<Error> error = forEachPrimitive(&MeshValidation::checkPrimitive);
+        if (!error) error = checkNodeWeights();
+        if (!error) error = forEachPrimitive(&MeshValidation::checkWeights);
+        if (!error) error = checkSkins();
+        if (!error) error = forEachPrimitive(&MeshValidation::checkJoints);
+        return error;
+    }
+
+private:
+    using Step = std::optional<Error> (MeshValidation::*)(tinygltf::Primitive& primitive, const PrimitiveName& name);
+
+    /// Those that are drawn: checkDocumentRules() has warned of the others.
+    std::optional<Error> forEachPrimitive(Step step)
+    {
+        for (std::size_t m = 0; m < _model.meshes.size(); ++m)
+            for (std::size_t p = 0; p < _model.meshes[m].primitives.size(); ++p)
+            {
+                tinygltf::Primitive& primitive = _model.meshes[m].primitives[p];
+                if (primitive.attributes.empty()) continue;
+                if (std::optional<Error> error = (this->*step)(primitive, PrimitiveName{m, p})) return error;
+            }
+        return std::nullopt;
+    }
+
+    std::optional<Error> checkPrimitive(tinygltf::Primitive& primitive, const PrimitiveName& name)
+    {
+        const std::size_t vertices = accessorOf(primitive.attributes.at("POSITION")).count;
         std::optional<Error> error = validateAttributes(primitive.attributes, {false, _quantized}, vertices, name, -1);
         for (std::size_t t = 0; t < primitive.targets.size() && !error; ++t)
             error = validateAttributes(primitive.targets[t], {true, _quantized}, vertices, name, static_cast<int>(t));
@@ -57,7 +144,6 @@ public:
         return std::nullopt;
     }
 
-private:
     static constexpr std::int64_t unknown = -1;
 
     const tinygltf::Accessor& accessorOf(int index) const { return elementOf(_model.accessors, index); }
@@ -76,8 +162,8 @@ private:
             if (accessor.count != vertices)
                 return fault(subject(), std::to_string(vertices) + " elements (the count of POSITION)",
                              std::to_string(accessor.count) + in());
-            if (!_budget.take(accessor.count * elementBytes(accessor)))
-                return fault(subject(), _budget.limitText() + " for all primitives", "more");
+            if (!_reads.take(accessor.count * elementBytes(accessor)))
+                return fault(subject(), _reads.limitText() + " for all primitives", "more");
         }
         return std::nullopt;
     }
@@ -118,8 +204,8 @@ private:
         if (accessor.type != TINYGLTF_TYPE_SCALAR || !integers || accessor.normalized)
             return fault(name.text() + ".indices", "SCALAR of unsigned byte, unsigned short or unsigned int",
                          formatText(accessor) + in());
-        if (!_budget.take(accessor.count * elementBytes(accessor)))
-            return fault(name.text() + ".indices", _budget.limitText() + " for all primitives", "more");
+        if (!_reads.take(accessor.count * elementBytes(accessor)))
+            return fault(name.text() + ".indices", _reads.limitText() + " for all primitives", "more");
         // The largest value of each type would restart the primitive (section 3.7.2.1).
         const std::size_t restart = (std::size_t(1) << 8 * componentBytes(accessor.componentType)) - 1;
         const std::int64_t max = maxIndex(primitive.indices);
@@ -149,192 +235,39 @@ private:
                                     " reads, found none; the texture is left out");
     }
 
-    const Model& _model;
-    MemoryBudget& _budget;
-    Report& _report;
-    bool _quantized;
-    std::vector<std::int64_t> _maxIndices;   ///< one per accessor
-    std::vector<std::uint32_t> _coordinates; ///< one per material: the sets it reads, as bits
-};
-
-std::optional<Error> validateNodeWeights(const Model& model)
-{
-    for (std::size_t n = 0; n < model.nodes.size(); ++n)
+    std::optional<Error> checkNodeWeights() const
     {
-        const tinygltf::Node& node = model.nodes[n];
-        if (node.weights.empty()) continue;
-        const std::size_t targets = elementOf(model.meshes, node.mesh).primitives.front().targets.size();
-        if (node.weights.size() != targets)
-            return fault(elementName("nodes", n) + ".weights",
-                         std::to_string(targets) + " (one a morph target of the mesh)",
-                         std::to_string(node.weights.size()));
-    }
-    return std::nullopt;
-}
-
-using Model = tinygltf::Model;
-
-// The rounding of up to sixteen floats, and less than one step of 16 bits.
-const double sumRounding = 1e-6;
-// Rounding weights to bytes one by one costs at most this much: mended without a warning.
-const double usualSumFault = 0.02;
-
-/// The joints and weights of a primitive: an array for each set, 4 numbers a vertex.
-struct Influences
-{
-    std::vector<std::vector<std::uint32_t>> joints;
-    std::vector<std::vector<float>> weights;
-};
-
-/// The joints that the vertices of one mesh refer to.
-struct JointDemand
-{
-    bool allPrimitives = true; ///< have joints
-    bool anyPrimitive = false;
-    std::size_t jointsWithWeight = 0; ///< one more than the largest joint number
-    std::size_t jointsInAll = 0;
-    std::size_t minSkin = std::numeric_limits<std::size_t>::max(); ///< joints of the smallest skin of the mesh
-
-    void add(const Influences& influences)
-    {
-        allPrimitives = allPrimitives && !influences.joints.empty();
-        anyPrimitive = anyPrimitive || !influences.joints.empty();
-        for (std::size_t set = 0; set < influences.joints.size(); ++set)
-            for (std::size_t i = 0; i < influences.joints[set].size(); ++i)
-            {
-                const std::size_t joints = static_cast<std::size_t>(influences.joints[set][i]) + 1;
-                jointsInAll = std::max(jointsInAll, joints);
-                if (influences.weights[set][i] > 0.0f) jointsWithWeight = std::max(jointsWithWeight, joints);
-            }
-    }
-};
-
-std::string jointsName(std::size_t set)
-{
-    return "JOINTS_" + std::to_string(set);
-}
-
-std::string weightsName(std::size_t set)
-{
-    return "WEIGHTS_" + std::to_string(set);
-}
-
-Influences readInfluences(const Model& model, const tinygltf::Primitive& primitive)
-{
-    Influences influences;
-    for (std::size_t set = 0; primitive.attributes.count(jointsName(set)) != 0; ++set)
-    {
-        influences.joints.push_back(readIntegers(model, primitive.attributes.at(jointsName(set))));
-        influences.weights.push_back(readFloats(model, primitive.attributes.at(weightsName(set))));
-    }
-    return influences;
-}
-
-struct MendedWeights
-{
-    bool any = false;
-    std::optional<std::string> fault; ///< the first one that is more than rounding one by one
-};
-
-/// Makes the weights of each vertex non-negative with a sum of 1.
-MendedWeights mendWeights(std::vector<std::vector<float>>& sets)
-{
-    MendedWeights mended;
-    const std::size_t vertices = sets.empty() ? 0 : sets[0].size() / 4;
-    for (std::size_t v = 0; v < vertices; ++v)
-    {
-        bool negative = false;
-        double sum = 0.0;
-        for (const std::vector<float>& weights : sets)
-            for (std::size_t i = 4 * v; i < 4 * v + 4; ++i)
-            {
-                negative = negative || weights[i] < 0.0f;
-                sum += std::max(weights[i], 0.0f);
-            }
-        const double sumFault = std::abs(sum - 1.0);
-        if (!negative && sumFault <= sumRounding) continue;
-        mended.any = true;
-        for (std::vector<float>& weights : sets)
-            for (std::size_t i = 4 * v; i < 4 * v + 4; ++i)
-                weights[i] = sum > 0.0 ? static_cast<float>(std::max(weights[i], 0.0f) / sum) : 0.0f;
-        if (sum == 0.0) sets[0][4 * v] = 1.0f;
-        if (!mended.fault && (negative || sumFault > usualSumFault))
-            mended.fault = "vertex " + std::to_string(v) + " has " +
-                           (negative    ? "a negative weight"
-                            : sum > 0.0 ? "weights that do not sum to 1"
-                                        : "no weight at all");
-    }
-    return mended;
-}
-
-/// The first primitive of the mesh with a weighted joint that the skin does not have.
-Error jointsFault(const Model& model, std::size_t mesh, std::size_t skin)
-{
-    const std::size_t count = model.skins[skin].joints.size();
-    for (std::size_t p = 0; p < model.meshes[mesh].primitives.size(); ++p)
-    {
-        JointDemand demand;
-        demand.add(readInfluences(model, model.meshes[mesh].primitives[p]));
-        if (demand.jointsWithWeight > count)
-            return fault(elementName("meshes", mesh, "primitives", p) + ".attributes.JOINTS_0",
-                         "joints below " + std::to_string(count) + " of " + elementName("skins", skin),
-                         std::to_string(demand.jointsWithWeight - 1));
-    }
-    return fault(elementName("meshes", mesh), "joints of " + elementName("skins", skin), "others");
-}
-
-/// Compares meshes with their skins, the meshes first.
-class SkinningValidation
-{
-public:
-    SkinningValidation(Model& model, MemoryBudget& budget, Report& report)
-        : _model(model), _budget(budget), _report(report), _demands(model.meshes.size())
-    {
-    }
-
-    std::optional<Error> run()
-    {
-        std::optional<Error> error = forEachPrimitive(&SkinningValidation::checkWeights);
-        if (!error) error = checkNodes();
-        if (!error) error = forEachPrimitive(&SkinningValidation::checkJoints);
-        return error;
-    }
-
-private:
-    using Step = std::optional<Error> (SkinningValidation::*)(std::size_t mesh, tinygltf::Primitive&,
-                                                              const PrimitiveName& name);
-
-    std::optional<Error> forEachPrimitive(Step step)
-    {
-        for (std::size_t m = 0; m < _model.meshes.size(); ++m)
-            for (std::size_t p = 0; p < _model.meshes[m].primitives.size(); ++p)
-            {
-                tinygltf::Primitive& primitive = _model.meshes[m].primitives[p];
-                if (primitive.attributes.empty()) continue;
-                if (std::optional<Error> error = (this->*step)(m, primitive, PrimitiveName{m, p})) return error;
-            }
-        return std::nullopt;
-    }
-
-    std::optional<Error> checkWeights(std::size_t mesh, tinygltf::Primitive& primitive, const PrimitiveName& name)
-    {
-        Influences influences = readInfluences(_model, primitive);
-        const MendedWeights mended = mendWeights(influences.weights);
-        _demands[mesh].add(influences);
-        if (!mended.any) return std::nullopt;
-        const std::string element = name.attributes() + ".WEIGHTS_0";
-        if (mended.fault)
-            _report.warn(element + ": " + *mended.fault + "; made to sum to 1, there and where else it is so");
-        for (std::size_t set = 0; set < influences.weights.size(); ++set)
+        for (std::size_t n = 0; n < _model.nodes.size(); ++n)
         {
-            if (!_budget.take(influences.weights[set].size() * sizeof(float)))
-                return fault(element, _budget.limitText(), "more");
-            primitive.attributes[weightsName(set)] = addAccessor(_model, influences.weights[set], TINYGLTF_TYPE_VEC4);
+            const tinygltf::Node& node = _model.nodes[n];
+            if (node.weights.empty()) continue;
+            const std::size_t targets = elementOf(_model.meshes, node.mesh).primitives.front().targets.size();
+            if (node.weights.size() != targets)
+                return fault(elementName("nodes", n) + ".weights",
+                             std::to_string(targets) + " (one a morph target of the mesh)", node.weights.size());
         }
         return std::nullopt;
     }
 
-    std::optional<Error> checkNodes()
+    std::optional<Error> checkWeights(tinygltf::Primitive& primitive, const PrimitiveName& name)
+    {
+        std::vector<FileInfluences> influences = readFileInfluences(_model, primitive);
+        const MendedWeights mended = mendWeights(influences);
+        _demands[name.mesh].add(name.primitive, influences);
+        if (!mended.any) return std::nullopt;
+        const std::string element = name.attributes() + ".WEIGHTS_0";
+        if (mended.fault)
+            _report.warn(element + ": " + *mended.fault + "; made to sum to 1, there and where else it is so");
+        for (std::size_t set = 0; set < influences.size(); ++set)
+        {
+            const std::vector<float>& weights = influences[set].weights;
+            if (!_budget.take(weights.size() * sizeof(float))) return fault(element, _budget.limitText(), "more");
+            primitive.attributes["WEIGHTS_" + std::to_string(set)] = addAccessor(_model, weights, TINYGLTF_TYPE_VEC4);
+        }
+        return std::nullopt;
+    }
+
+    std::optional<Error> checkSkins()
     {
         for (std::size_t n = 0; n < _model.nodes.size(); ++n)
         {
@@ -342,7 +275,7 @@ private:
             if (node.skin < 0) continue;
             JointDemand& demand = elementOf(_demands, node.mesh);
             const std::string name = elementName("nodes", n) + ".skin: " + elementName("meshes", node.mesh);
-            if (!demand.anyPrimitive)
+            if (demand.jointsWithWeight.empty())
             {
                 _report.warn(name + " has no JOINTS_0 and WEIGHTS_0; the skin is ignored");
                 node.skin = -1;
@@ -350,31 +283,34 @@ private:
             }
             if (!demand.allPrimitives) _report.warn(name + " has primitives without JOINTS_0; they are not skinned");
             const std::size_t joints = elementOf(_model.skins, node.skin).joints.size();
-            if (demand.jointsWithWeight > joints)
-                return jointsFault(_model, static_cast<std::size_t>(node.mesh), static_cast<std::size_t>(node.skin));
+            for (const auto& [primitive, needed] : demand.jointsWithWeight)
+                if (needed > joints)
+                    return fault(elementName("meshes", node.mesh, "primitives", primitive) + ".attributes.JOINTS_0",
+                                 "joints below " + std::to_string(joints) + " of " + elementName("skins", node.skin),
+                                 needed - 1);
             demand.minSkin = std::min(demand.minSkin, joints);
         }
         return std::nullopt;
     }
 
-    std::optional<Error> checkJoints(std::size_t mesh, tinygltf::Primitive& primitive, const PrimitiveName& name)
+    std::optional<Error> checkJoints(tinygltf::Primitive& primitive, const PrimitiveName& name)
     {
-        const JointDemand& demand = _demands[mesh];
+        const JointDemand& demand = _demands[name.mesh];
         if (demand.jointsInAll <= demand.minSkin) return std::nullopt;
-        const Influences influences = readInfluences(_model, primitive);
+        const std::vector<FileInfluences> influences = readFileInfluences(_model, primitive);
         const std::string element = name.attributes() + ".JOINTS_0";
         bool mended = false;
-        for (std::size_t set = 0; set < influences.joints.size(); ++set)
+        for (std::size_t set = 0; set < influences.size(); ++set)
         {
             std::vector<std::uint16_t> joints;
-            joints.reserve(influences.joints[set].size());
-            for (const std::uint32_t joint : influences.joints[set])
+            joints.reserve(influences[set].joints.size());
+            for (const std::uint32_t joint : influences[set].joints)
                 joints.push_back(joint < demand.minSkin ? static_cast<std::uint16_t>(joint) : std::uint16_t(0));
-            if (std::equal(joints.begin(), joints.end(), influences.joints[set].begin())) continue;
+            if (std::equal(joints.begin(), joints.end(), influences[set].joints.begin())) continue;
             mended = true;
             if (!_budget.take(joints.size() * sizeof(std::uint16_t)))
                 return fault(element, _budget.limitText(), "more");
-            primitive.attributes[jointsName(set)] = addAccessor(_model, joints, TINYGLTF_TYPE_VEC4);
+            primitive.attributes["JOINTS_" + std::to_string(set)] = addAccessor(_model, joints, TINYGLTF_TYPE_VEC4);
         }
         if (mended)
             _report.warn(element + ": expected joints below " + std::to_string(demand.minSkin) +
@@ -384,22 +320,19 @@ private:
 
     Model& _model;
     MemoryBudget& _budget;
+    MemoryBudget _reads; ///< of attributes and indices, which many primitives may share
     Report& _report;
-    std::vector<JointDemand> _demands; ///< one per mesh
+    bool _quantized;
+    std::vector<std::int64_t> _maxIndices;   ///< one per accessor
+    std::vector<std::uint32_t> _coordinates; ///< one per material: the sets it reads, as bits
+    std::vector<JointDemand> _demands;       ///< one per mesh
 };
 
 } // namespace
 
 std::optional<Error> validateMeshes(Model& model, MemoryBudget& budget, Report& report)
 {
-    MemoryBudget primitives(budget.limit());
-    MeshValidation validation(model, primitives, report);
-    for (std::size_t m = 0; m < model.meshes.size(); ++m)
-        for (std::size_t p = 0; p < model.meshes[m].primitives.size(); ++p)
-            if (std::optional<Error> error = validation.validate(model.meshes[m].primitives[p], PrimitiveName{m, p}))
-                return error;
-    if (std::optional<Error> error = validateNodeWeights(model)) return error;
-    return SkinningValidation(model, budget, report).run();
+    return MeshValidation(model, budget, report).run();
 }
 
 } // namespace osgGpuAnimation::gltf

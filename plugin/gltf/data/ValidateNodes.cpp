@@ -186,12 +186,6 @@ bool isFloat(const tinygltf::Accessor& accessor)
     return accessor.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT;
 }
 
-/// True for floats and for the normalized small integers that rotations and weights may have.
-bool isFloatOrNormalized(const tinygltf::Accessor& accessor)
-{
-    return isFloat(accessor) || (accessor.normalized && componentBytes(accessor.componentType) <= 2);
-}
-
 std::string in(int accessor)
 {
     return " in " + elementName("accessors", accessor);
@@ -205,14 +199,10 @@ bool isCubic(const tinygltf::AnimationSampler& sampler)
 /// Empty if an output may drive the path, else the expected format.
 std::string wrongOutputFormat(const tinygltf::Accessor& output, std::string_view path)
 {
-    if (path == "rotation")
-        return output.type == TINYGLTF_TYPE_VEC4 && isFloatOrNormalized(output)
-                   ? ""
-                   : "VEC4 of float or normalized byte, unsigned byte, short or unsigned short";
-    if (path == "weights")
-        return output.type == TINYGLTF_TYPE_SCALAR && isFloatOrNormalized(output)
-                   ? ""
-                   : "SCALAR of float or normalized byte, unsigned byte, short or unsigned short";
+    static const std::string small = " of float or normalized byte, unsigned byte, short or unsigned short";
+    const bool isSmall = isFloat(output) || (output.normalized && componentBytes(output.componentType) <= 2);
+    if (path == "rotation") return output.type == TINYGLTF_TYPE_VEC4 && isSmall ? "" : "VEC4" + small;
+    if (path == "weights") return output.type == TINYGLTF_TYPE_SCALAR && isSmall ? "" : "SCALAR" + small;
     return output.type == TINYGLTF_TYPE_VEC3 && isFloat(output) ? "" : "VEC3 of float";
 }
 
@@ -249,7 +239,7 @@ public:
                 return error;
         for (std::size_t c = 0; c < animation.channels.size(); ++c)
         {
-            if (!isUsed(animation.channels[c])) continue;
+            if (animation.channels[c].target_node < 0 && !propertyOf(animation.channels[c])) continue;
             const std::optional<Error> error = validateChannel(a, c);
             if (!error) continue;
             if (!hasPointer(animation.channels[c])) return error;
@@ -260,11 +250,6 @@ public:
     }
 
 private:
-    static bool isUsed(const tinygltf::AnimationChannel& channel)
-    {
-        return channel.target_node >= 0 || propertyOf(channel).has_value();
-    }
-
     const tinygltf::Accessor& accessorOf(int index) const { return elementOf(_model.accessors, index); }
 
     std::optional<Error> validateInput(int input, const std::string& name) const
@@ -301,7 +286,9 @@ private:
                          std::to_string(perTime) + " values for each of " + std::to_string(times) + " times",
                          std::to_string(output.count) + " values" + in(sampler.output));
         if (property) return std::nullopt;
-        warnOfMatrix(channel, channelName);
+        if (!elementOf(_model.nodes, channel.target_node).matrix.empty())
+            _report.warn(channelName() + ".target: " + elementName("nodes", channel.target_node) +
+                         " has a matrix, which no animation should change");
         if (std::string_view(channel.target_path) == "rotation") mendRotations(sampler, samplerName);
         return std::nullopt;
     }
@@ -312,14 +299,6 @@ private:
         if (std::string_view(channel.target_path) != "weights" || weightOf(channel) >= 0) return 1;
         const int mesh = elementOf(_model.nodes, channel.target_node).mesh;
         return mesh < 0 ? 0 : elementOf(_model.meshes, mesh).primitives.front().targets.size();
-    }
-
-    template <typename Name>
-    void warnOfMatrix(const tinygltf::AnimationChannel& channel, const Name& name)
-    {
-        if (!elementOf(_model.nodes, channel.target_node).matrix.empty())
-            _report.warn(name() + ".target: " + elementName("nodes", channel.target_node) +
-                         " has a matrix, which no animation should change");
     }
 
     /// Replaces a quaternion of length 0, which is not a rotation, by the one before it.

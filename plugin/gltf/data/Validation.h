@@ -20,20 +20,18 @@ namespace osgGpuAnimation::gltf
 /// indices increase and lie within the accessor; no float is NaN or infinite (glTF 2.0, section 3.6). Accessors without
 /// data hold zeros, whose number the data of the document limits. Primitives lose normals, tangents, colours and
 /// texture coordinates that are not finite, with a warning each. first: the accessor to begin with; those before it are
-/// valid. Returns the first fault, for which the document must be refused.
+/// valid.
 std::optional<Error> validateAccessors(tinygltf::Model& model, std::size_t first, MemoryBudget& budget, Report& report);
 
 /// Nodes form trees (glTF 2.0, section 3.5.2): no cycle, no node with two parents, no branch of more than maxDepth
 /// nodes. The nodes of each scene are roots, each named once (3.5.1). A skin (3.7.3) names each joint once and has an
 /// inverse bind matrix for each. Warns of joints in several trees or outside the scene of their mesh, and of matrices
 /// whose last row is not 0 0 0 1.
-/// Returns the first fault, for which the document must be refused.
 std::optional<Error> validateNodes(const tinygltf::Model& model, std::size_t maxDepth, Report& report);
 
 /// Animations (glTF 2.0, section 3.11): key times are floats, outputs have the type of their path and as many values as
 /// the times, the interpolation and the morph targets need. Rotations of length 0 are mended in data of our own. Warns
-/// of nodes that have a matrix. readClips() checks the order of the times. Returns the first fault, for which the
-/// document must be refused.
+/// of nodes that have a matrix. readClips() checks the order of the times.
 std::optional<Error> validateAnimations(tinygltf::Model& model, Report& report);
 
 /// Primitives (glTF 2.0, section 3.7.2): attributes and morph targets have the types that they may have and one value a
@@ -44,7 +42,7 @@ std::optional<Error> validateAnimations(tinygltf::Model& model, Report& report);
 /// Skinning (section 3.7.3.3): a vertex names joints of every skin that its mesh is used with. This is the one place
 /// that mends influences, in data of our own: weights that are negative or do not sum to 1 (without a warning where the
 /// sum is off by at most 2 %), joint numbers beyond the skin that have no weight. A node loses its skin, with a
-/// warning, if its mesh has no joints. Returns the first fault, for which the document must be refused.
+/// warning, if its mesh has no joints.
 std::optional<Error> validateMeshes(tinygltf::Model& model, MemoryBudget& budget, Report& report);
 
 } // namespace osgGpuAnimation::gltf

@@ -23,30 +23,40 @@ int findAccessor(const Attributes& attributes, const std::string& name)
     return found == attributes.end() ? -1 : found->second;
 }
 
-/// Linear red, green, blue, alpha for each vertex; empty if the primitive has no colours. otherwise: the alpha of
-/// colours without one.
-std::vector<osg::Vec4> readLinearColors(const tinygltf::Model& model, const Attributes& attributes, float otherwise)
+/// An element for each vertex; null without the attribute. make: an element of the vertex's numbers and their count.
+template <typename Array, typename Make>
+osg::ref_ptr<Array> readArray(const tinygltf::Model& model, const Attributes& attributes, const std::string& name,
+                              const Make& make)
 {
-    std::vector<osg::Vec4> colors;
-    const int accessor = findAccessor(attributes, "COLOR_0");
-    if (accessor < 0) return colors;
+    const int accessor = findAccessor(attributes, name);
+    if (accessor < 0) return nullptr;
     const std::vector<float> numbers = readFloats(model, accessor);
     const std::size_t components = componentCount(elementOf(model.accessors, accessor));
-    colors.reserve(numbers.size() / components);
+    osg::ref_ptr<Array> made = new Array(osg::Array::BIND_PER_VERTEX);
+    made->reserve(numbers.size() / components);
     for (std::size_t i = 0; i + components <= numbers.size(); i += components)
-        colors.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2], components == 4 ? numbers[i + 3] : otherwise);
-    return colors;
+        made->push_back(make(&numbers[i], components));
+    return made;
+}
+
+/// Linear red, green, blue, alpha. otherwise: the alpha of colours without one.
+osg::ref_ptr<osg::Vec4Array> readLinearColors(const tinygltf::Model& model, const Attributes& attributes,
+                                              float otherwise)
+{
+    return readArray<osg::Vec4Array>(
+        model, attributes, "COLOR_0",
+        [&](const float* color, std::size_t components)
+        { return osg::Vec4(color[0], color[1], color[2], components == 4 ? color[3] : otherwise); });
 }
 
 osg::ref_ptr<osg::Vec4Array> readColorChanges(const tinygltf::Model& model, const Attributes& base,
                                               const Attributes& target)
 {
-    const std::vector<osg::Vec4> from = readLinearColors(model, base, 1.0f);
-    const std::vector<osg::Vec4> change = readLinearColors(model, target, 0.0f);
-    if (from.empty() || change.empty()) return nullptr;
-    osg::ref_ptr<osg::Vec4Array> changes = new osg::Vec4Array;
-    for (std::size_t i = 0; i < from.size(); ++i)
-        changes->push_back(displayColor(from[i] + change[i]) - displayColor(from[i]));
+    const osg::ref_ptr<osg::Vec4Array> from = readLinearColors(model, base, 1.0f);
+    osg::ref_ptr<osg::Vec4Array> changes = readLinearColors(model, target, 0.0f);
+    if (!from || !changes) return nullptr;
+    for (std::size_t i = 0; i < from->size(); ++i)
+        (*changes)[i] = displayColor((*from)[i] + (*changes)[i]) - displayColor((*from)[i]);
     return changes;
 }
 
@@ -77,12 +87,9 @@ osg::ref_ptr<osg::Vec3Array> readVectors(const tinygltf::Model& model, const std
 
 osg::ref_ptr<osg::Vec4Array> readColors(const tinygltf::Model& model, const tinygltf::Primitive& primitive)
 {
-    const std::vector<osg::Vec4> linear = readLinearColors(model, primitive.attributes, 1.0f);
-    if (linear.empty()) return nullptr;
-    osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array(osg::Array::BIND_PER_VERTEX);
-    colors->reserve(linear.size());
-    for (const osg::Vec4& color : linear)
-        colors->push_back(displayColor(color));
+    osg::ref_ptr<osg::Vec4Array> colors = readLinearColors(model, primitive.attributes, 1.0f);
+    for (std::size_t i = 0; colors && i < colors->size(); ++i)
+        (*colors)[i] = displayColor((*colors)[i]);
     return colors;
 }
 
@@ -90,27 +97,16 @@ osg::ref_ptr<osg::Vec2Array> readTextureCoordinates(const tinygltf::Model& model
                                                     const std::map<std::string, int>& attributes,
                                                     const TextureCoordinates& coordinates)
 {
-    const int accessor = findAccessor(attributes, "TEXCOORD_" + std::to_string(coordinates.set()));
-    if (accessor < 0) return nullptr;
-    const std::vector<float> numbers = readFloats(model, accessor);
-    osg::ref_ptr<osg::Vec2Array> out = new osg::Vec2Array(osg::Array::BIND_PER_VERTEX);
-    out->reserve(numbers.size() / 2);
-    for (std::size_t i = 0; i + 2 <= numbers.size(); i += 2)
-        out->push_back(coordinates.transformed(osg::Vec2(numbers[i], numbers[i + 1])));
-    return out;
+    return readArray<osg::Vec2Array>(model, attributes, "TEXCOORD_" + std::to_string(coordinates.set()),
+                                     [&](const float* at, std::size_t)
+                                     { return coordinates.transformed(osg::Vec2(at[0], at[1])); });
 }
 
 osg::ref_ptr<osg::Vec4Array> readTangents(const tinygltf::Model& model, const tinygltf::Primitive& primitive)
 {
-    const int accessor = findAccessor(primitive.attributes, "TANGENT");
-    if (accessor < 0) return nullptr;
-    const std::vector<float> numbers = readFloats(model, accessor);
-    osg::ref_ptr<osg::Vec4Array> tangents = new osg::Vec4Array(osg::Array::BIND_PER_VERTEX);
-    tangents->reserve(numbers.size() / 4);
-    for (std::size_t i = 0; i + 4 <= numbers.size(); i += 4)
-        tangents->push_back(
-            osg::Vec4(numbers[i], numbers[i + 1], numbers[i + 2], numbers[i + 3] < 0.0f ? -1.0f : 1.0f));
-    return tangents;
+    return readArray<osg::Vec4Array>(model, primitive.attributes, "TANGENT",
+                                     [](const float* at, std::size_t)
+                                     { return osg::Vec4(at[0], at[1], at[2], at[3] < 0.0f ? -1.0f : 1.0f); });
 }
 
 std::vector<MorphTarget> readMorphTargets(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
@@ -138,6 +134,15 @@ std::size_t influenceSetCount(const tinygltf::Primitive& primitive)
     while (primitive.attributes.count("JOINTS_" + std::to_string(count)) > 0)
         ++count;
     return count;
+}
+
+std::vector<FileInfluences> readFileInfluences(const tinygltf::Model& model, const tinygltf::Primitive& primitive)
+{
+    std::vector<FileInfluences> sets;
+    for (std::size_t set = 0; set < influenceSetCount(primitive); ++set)
+        sets.push_back({readIntegers(model, primitive.attributes.at("JOINTS_" + std::to_string(set))),
+                        readFloats(model, primitive.attributes.at("WEIGHTS_" + std::to_string(set)))});
+    return sets;
 }
 
 } // namespace osgGpuAnimation::gltf

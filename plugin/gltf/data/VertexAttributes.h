@@ -9,6 +9,7 @@
 #include <tiny_gltf.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -44,4 +45,11 @@ std::size_t wholeCount(int mode, std::size_t count);
 /// The number of consecutive JOINTS_n with WEIGHTS_n of the primitive, from n = 0.
 std::size_t influenceSetCount(const tinygltf::Primitive& primitive);
 
+/// JOINTS_n and WEIGHTS_n of a primitive, four numbers a vertex.
+struct FileInfluences
+{
+    std::vector<std::uint32_t> joints;
+    std::vector<float> weights;
+};
+std::vector<FileInfluences> readFileInfluences(const tinygltf::Model& model, const tinygltf::Primitive& primitive);
 } // namespace osgGpuAnimation::gltf

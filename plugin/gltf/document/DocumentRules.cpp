@@ -2,11 +2,10 @@
 #include "gltf/document/DocumentRules.h"
 
 #include "gltf/document/AttributeSemantic.h"
-
+#include "gltf/file/Elements.h"
 #include <algorithm>
 #include <array>
 #include <bitset>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -101,8 +100,7 @@ std::optional<Error> checkDraco(const JsonValue& primitive, const PrimitiveName&
     const std::string place = name.text() + ".extensions.KHR_draco_mesh_compression.attributes";
     if (!attributes.is(JsonTree::Type::Object)) return fault(place, "an object", attributes.description());
     if (attributes.size() > maxDracoAttributes)
-        return fault(place, "at most " + std::to_string(maxDracoAttributes) + " attributes",
-                     std::to_string(attributes.size()));
+        return fault(place, "at most " + std::to_string(maxDracoAttributes) + " attributes", attributes.size());
     for (const JsonValue& attribute : attributes)
     {
         if (!attribute.isInteger() || attribute.number() < 0.0 || attribute.number() > 4294967295.0)
@@ -130,8 +128,7 @@ std::optional<Error> checkPrimitiveRules(const JsonValue& meshes, Report& report
             const std::size_t count = list ? list.size() : 0;
             if (p == 0) targets = count;
             if (count != targets)
-                return fault(name.text() + ".targets", std::to_string(targets) + " as in the primitives before",
-                             std::to_string(count));
+                return fault(name.text() + ".targets", std::to_string(targets) + " as in the primitives before", count);
             if (std::optional<Error> error = checkDraco(primitive, name)) return error;
             checkPrimitive(primitive, name, report);
             ++p;
@@ -139,7 +136,7 @@ std::optional<Error> checkPrimitiveRules(const JsonValue& meshes, Report& report
         const JsonValue weights = mesh["weights"];
         if (weights && weights.size() != targets)
             return fault(elementName("meshes", m) + ".weights", std::to_string(targets) + " (one a morph target)",
-                         std::to_string(weights.size()));
+                         weights.size());
         ++m;
     }
     return std::nullopt;
@@ -274,34 +271,20 @@ const std::string_view looksAloneNames[] = {
     "_materials_", "_texture_", "_lights_", "KHR_environment_map", "MSFT_packing_", "KHR_techniques_webgl", "KHR_xmp",
 };
 
-enum class ExtensionSupport
+bool changesLooksAlone(std::string_view extension)
 {
-    Supported,
-    LooksAlone, ///< left out with a warning
-    Unknown     ///< a file that requires it is refused
-};
-
-ExtensionSupport supportOf(std::string_view extension)
-{
-    if (std::find(std::begin(supportedExtensions), std::end(supportedExtensions), extension) !=
-        std::end(supportedExtensions))
-        return ExtensionSupport::Supported;
-    const bool changesLooks =
-        std::any_of(std::begin(looksAloneNames), std::end(looksAloneNames),
-                    [extension](std::string_view part) { return extension.find(part) != std::string_view::npos; });
-    return changesLooks ? ExtensionSupport::LooksAlone : ExtensionSupport::Unknown;
+    return std::any_of(std::begin(looksAloneNames), std::end(looksAloneNames),
+                       [&](std::string_view part) { return extension.find(part) != std::string_view::npos; });
 }
 
 /// "2.1" is 2 and 1; nothing if the text is not a version.
-std::optional<std::pair<int, int>> parseVersion(std::string_view text)
+std::optional<std::pair<unsigned, unsigned>> parseVersion(std::string_view text)
 {
-    int major = 0, minor = 0;
-    const char* const end = text.data() + text.size();
-    const std::from_chars_result first = std::from_chars(text.data(), end, major);
-    if (first.ec != std::errc() || first.ptr == end || *first.ptr != '.') return std::nullopt;
-    const std::from_chars_result second = std::from_chars(first.ptr + 1, end, minor);
-    if (second.ec != std::errc() || second.ptr != end || major < 0 || minor < 0) return std::nullopt;
-    return std::pair(major, minor);
+    const std::size_t dot = std::min(text.find('.'), text.size());
+    const auto major = parsedNumber<unsigned>(text.substr(0, dot));
+    const auto minor = parsedNumber<unsigned>(text.substr(std::min(dot + 1, text.size())));
+    if (!major || !minor) return std::nullopt;
+    return std::pair(*major, *minor);
 }
 
 std::optional<Error> checkVersion(const JsonValue& asset)
@@ -312,7 +295,7 @@ std::optional<Error> checkVersion(const JsonValue& asset)
     const JsonValue min = asset["minVersion"];
     if (!min) return std::nullopt;
     const auto parsedLeast = parseVersion(min.text());
-    if (!parsedLeast || *parsedLeast > std::pair(2, 0))
+    if (!parsedLeast || *parsedLeast > std::pair(2u, 0u))
         return fault("asset.minVersion", "a version that glTF 2.0 satisfies", min.description());
     return std::nullopt;
 }
@@ -327,9 +310,8 @@ std::optional<Error> checkExtensions(const JsonValue& document, Report& report)
         for (const JsonValue& extension : document[list])
         {
             const std::string name = elementName(list, i++);
-            const ExtensionSupport support = supportOf(extension.text());
-            if (support == ExtensionSupport::Supported || !seen.insert(extension.text()).second) continue;
-            if (support == ExtensionSupport::LooksAlone)
+            if (contains(supportedExtensions, extension.text()) || !seen.insert(extension.text()).second) continue;
+            if (changesLooksAlone(extension.text()))
                 report.warn(name + ": " + extension.description() +
                             " is not supported and changes looks alone; left out");
             else if (list == std::string_view("extensionsRequired"))
@@ -354,14 +336,6 @@ std::optional<Error> checkImages(const JsonValue& images)
     return std::nullopt;
 }
 
-void noteScenes(const JsonValue& document, Report& report)
-{
-    if (!document["scenes"])
-        report.note("scenes: the document has none: it is a library of parts");
-    else if (!document["scene"])
-        report.note("scene: the document names none to show");
-}
-
 } // namespace
 
 std::optional<Error> checkDocumentRules(const JsonValue& document, Report& report)
@@ -375,7 +349,10 @@ std::optional<Error> checkDocumentRules(const JsonValue& document, Report& repor
     checkNodeRules(document["nodes"], report);
     checkViewRules(document, report);
     checkVariantRules(document, report);
-    noteScenes(document, report);
+    if (!document["scenes"])
+        report.note("scenes: the document has none: it is a library of parts");
+    else if (!document["scene"])
+        report.note("scene: the document names none to show");
     return std::nullopt;
 }
 

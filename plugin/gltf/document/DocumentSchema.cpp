@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/document/DocumentSchema.h"
+#include "gltf/document/DocumentRules.h"
 
 #include "gltf/document/SchemaRule.h"
 
@@ -275,30 +275,19 @@ std::string elementsText(const SchemaRule& rule)
     return (rule.minCount == rule.maxCount ? "" : "at least ") + std::to_string(rule.minCount) + what;
 }
 
-/// Calls visit(choice) for each choice until it returns true; returns whether a call did.
-template <typename Visit>
-bool anyChoice(const SchemaRule& rule, const Visit& visit)
-{
-    for (std::string_view left = rule.choices; !left.empty();)
-    {
-        const std::size_t end = std::min(left.find(' '), left.size());
-        if (visit(left.substr(0, end))) return true;
-        left.remove_prefix(std::min(end + 1, left.size()));
-    }
-    return false;
-}
-
 std::string choicesText(const SchemaRule& rule)
 {
-    std::string list;
-    anyChoice(rule,
-              [&](std::string_view choice)
-              {
-                  list += list.empty() ? "one of " : ", ";
-                  list += rule.kind == Kind::Choice ? quoted(choice) : std::string(choice);
-                  return false;
-              });
-    return list;
+    const std::string quote = rule.kind == Kind::Choice ? "\"" : "";
+    std::string list = "one of " + quote;
+    for (const char letter : rule.choices)
+        list += letter == ' ' ? quote + ", " + quote : std::string(1, letter);
+    return list + quote;
+}
+
+bool isChoice(const SchemaRule& rule, const std::string& text)
+{
+    const bool isWord = text.find(' ') == std::string::npos;
+    return isWord && (' ' + std::string(rule.choices) + ' ').find(' ' + text + ' ') != std::string::npos;
 }
 
 class SchemaCheck
@@ -313,8 +302,8 @@ public:
     /// The first fault that the document must be refused for.
     std::optional<Error> run()
     {
-        checkObject(_document, documentMembers, std::size(documentMembers));
-        return _error;
+        if (checkObject(_document, documentMembers, std::size(documentMembers))) return std::nullopt;
+        return _finding;
     }
 
 private:
@@ -361,7 +350,6 @@ private:
         if (outcome == Outcome::Good) return true;
         member.dropFrom(object);
         const bool refuse = outcome == Outcome::Refuse || (rule.isRequired && rule.onFault == OnFault::Refuse);
-        if (refuse && !_error) _error = _finding;
         if (!refuse) _report.warn(_finding.message + "; left out");
         return !refuse;
     }
@@ -372,10 +360,7 @@ private:
         const char* const expected = rule.isList ? "an array" : rule.kind == Kind::Object ? "an object" : "a value";
         const Outcome outcome = find(rule.onFault, expected, "nothing");
         _path.pop_back();
-        if (outcome == Outcome::Refuse)
-            _error = _finding;
-        else
-            _report.warn(_finding.message);
+        if (outcome != Outcome::Refuse) _report.warn(_finding.message);
         return outcome != Outcome::Refuse;
     }
 
@@ -454,7 +439,7 @@ private:
         const auto found = std::find_if(_sizes.begin(), _sizes.end(),
                                         [&](const auto& entry) { return entry.first == rule.collection; });
         const std::size_t size = found == _sizes.end() ? 0 : found->second;
-        if (value.isInteger() && value.number() >= 0.0 && value.number() < double(size)) return Outcome::Good;
+        if (value.isIndexBelow(size)) return Outcome::Good;
         return wrong(rule, "an index below " + std::to_string(size) + " of " + std::string(rule.collection), value);
     }
 
@@ -464,7 +449,7 @@ private:
         if (value.is(isText ? Type::String : Type::Number))
         {
             const std::string given = isText ? std::string(value.text()) : numberText(value.number());
-            if (anyChoice(rule, [&](std::string_view choice) { return choice == given; })) return Outcome::Good;
+            if (isChoice(rule, given)) return Outcome::Good;
         }
         return wrong(rule, choicesText(rule), value);
     }
@@ -511,7 +496,6 @@ private:
     std::vector<std::pair<std::string_view, std::size_t>> _sizes; ///< of the arrays of the document
     std::vector<Step> _path;
     Error _finding; ///< the last fault, recorded while its path is known
-    std::optional<Error> _error;
 };
 
 } // namespace

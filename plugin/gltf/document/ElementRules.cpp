@@ -2,6 +2,7 @@
 #include "gltf/document/DocumentRules.h"
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -56,30 +57,23 @@ constexpr double maxFloat = 3.4028234663852886e38;
 constexpr double halfPi = 1.5707964; // pi / 2 as a float, rounded up
 constexpr double pi = 3.14159265358979;
 
+constexpr double aboveZero = std::numeric_limits<double>::denorm_min();
+
 struct NumberRule
 {
     std::string_view member;
     double min, max;
-    bool isLeastAllowed;
     const char* expected;
 };
-
 constexpr NumberRule lightNumbers[] = {
-    {"intensity", 0.0, maxFloat, true, "a number from 0"},
-    {"range", 0.0, maxFloat, false, "a number above 0"},
+    {"intensity", 0.0, maxFloat, "a number from 0"},
+    {"range", aboveZero, maxFloat, "a number above 0"},
 };
-
 constexpr NumberRule coneNumbers[] = {
-    {"innerConeAngle", 0.0, halfPi, true, "an angle from 0, below pi / 2"},
-    {"outerConeAngle", 0.0, halfPi, false, "an angle above 0, at most pi / 2"},
+    {"innerConeAngle", 0.0, halfPi, "an angle from 0, below pi / 2"},
+    {"outerConeAngle", aboveZero, halfPi, "an angle above 0, at most pi / 2"},
 };
-
 constexpr double defaultOuterAngle = 0.7853981633974483; // pi / 4
-
-bool isIn(const NumberRule& rule, double number)
-{
-    return number <= rule.max && (number > rule.min || (rule.isLeastAllowed && number == rule.min));
-}
 
 /// A fault for a member of another type. A number out of range is left out.
 template <std::size_t count>
@@ -91,7 +85,7 @@ Fault checkNumbers(const JsonValue& object, const NumberRule (&rules)[count], co
         if (!value) continue;
         const std::string member = name + '.' + std::string(rule.member);
         if (!value.is(JsonTree::Type::Number)) return fault(member, rule.expected, value.description());
-        if (isIn(rule, value.number())) continue;
+        if (value.number() >= rule.min && value.number() <= rule.max) continue;
         report.warn(fault(member, rule.expected, value.description()).message + "; left out");
         value.dropFrom(object);
     }

@@ -33,19 +33,10 @@ public:
     }
 
     bool null() { return add(JsonTree::Type::Null); }
-    bool boolean(bool value) { return addNumber(JsonTree::Type::Boolean, value ? 1.0 : 0.0); }
-    bool number_integer(Json::number_integer_t value)
-    {
-        return addNumber(JsonTree::Type::Number, static_cast<double>(value));
-    }
-    bool number_unsigned(Json::number_unsigned_t value)
-    {
-        return addNumber(JsonTree::Type::Number, static_cast<double>(value));
-    }
-    bool number_float(Json::number_float_t value, const std::string&)
-    {
-        return addNumber(JsonTree::Type::Number, value);
-    }
+    bool boolean(bool value) { return addNumber(value ? 1.0 : 0.0, JsonTree::Type::Boolean); }
+    bool number_integer(Json::number_integer_t value) { return addNumber(static_cast<double>(value)); }
+    bool number_unsigned(Json::number_unsigned_t value) { return addNumber(static_cast<double>(value)); }
+    bool number_float(Json::number_float_t value, const std::string&) { return addNumber(value); }
     bool string(std::string& value)
     {
         const bool isData = isDataOfFile(value);
@@ -125,7 +116,7 @@ private:
         return true;
     }
 
-    bool addNumber(JsonTree::Type type, double value)
+    bool addNumber(double value, JsonTree::Type type = JsonTree::Type::Number)
     {
         if (!add(type)) return false;
         _tree.setNumber(_last, value);

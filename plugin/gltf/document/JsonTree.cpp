@@ -23,11 +23,6 @@ std::uint32_t JsonTree::add(Type type, std::string_view key)
     return node.end - 1;
 }
 
-void JsonTree::setNumber(std::uint32_t value, double number)
-{
-    _nodes[value].number = number;
-}
-
 void JsonTree::setText(std::uint32_t value, std::string_view text)
 {
     _nodes[value].text = static_cast<std::uint32_t>(_text.size());
@@ -46,11 +41,6 @@ void JsonTree::end(std::uint32_t container, std::uint32_t size)
 {
     _nodes[container].end = static_cast<std::uint32_t>(_nodes.size());
     _nodes[container].size = size;
-}
-
-void JsonTree::drop(std::uint32_t value)
-{
-    _nodes[value].dropped = true;
 }
 
 bool JsonValue::isInteger() const
@@ -74,7 +64,7 @@ JsonValue JsonValue::operator[](std::string_view member) const
 
 void JsonValue::dropFrom(const JsonValue& object) const
 {
-    _tree->_nodes[_value].dropped = true;
+    _tree->drop(_value);
     --_tree->_nodes[object._value].size;
 }
 

@@ -35,12 +35,12 @@ public:
 
     /// For the reader: values in document order; end() is called for each array and object once it is complete.
     std::uint32_t add(Type type, std::string_view key);
-    void setNumber(std::uint32_t value, double number);
+    void setNumber(std::uint32_t value, double number) { _nodes[value].number = number; }
     void setText(std::uint32_t value, std::string_view text);
     /// The same for a data URI, which is not copied.
     void setData(std::uint32_t value, std::string&& uri);
     void end(std::uint32_t container, std::uint32_t size);
-    void drop(std::uint32_t value);
+    void drop(std::uint32_t value) { _nodes[value].dropped = true; }
     std::size_t size() const { return _nodes.size(); }
     std::string_view keyOf(std::uint32_t value) const
     {

@@ -16,38 +16,33 @@ namespace
 // The import keeps lists beside the nodes: parent, root, world matrix and name of each.
 constexpr std::size_t bytesBesideANode = 192;
 
+/// A list of the document, or a list within each of its elements.
 struct List
 {
     std::string_view name;
+    std::string_view inner; ///< empty: the list itself
     std::size_t bytesAnElement;
-    std::string_view inner[2]; ///< lists of each element; empty: none
-    std::size_t bytesAnInnerElement[2];
 };
 
 const List lists[] = {
-    {"nodes", sizeof(tinygltf::Node) + bytesBesideANode, {}, {}},
-    {"materials", sizeof(tinygltf::Material), {}, {}},
-    {"meshes", sizeof(tinygltf::Mesh), {"primitives"}, {sizeof(tinygltf::Primitive)}},
-    {"accessors", sizeof(tinygltf::Accessor), {}, {}},
-    {"buffers", sizeof(tinygltf::Buffer), {}, {}},
-    {"bufferViews", sizeof(tinygltf::BufferView), {}, {}},
-    {"animations",
-     sizeof(tinygltf::Animation),
-     {"channels", "samplers"},
-     {sizeof(tinygltf::AnimationChannel), sizeof(tinygltf::AnimationSampler)}},
-    {"skins", sizeof(tinygltf::Skin), {}, {}},
-    {"scenes", sizeof(tinygltf::Scene), {}, {}},
-    {"textures", sizeof(tinygltf::Texture), {}, {}},
-    {"samplers", sizeof(tinygltf::Sampler), {}, {}},
-    {"images", sizeof(tinygltf::Image), {}, {}},
-    {"cameras", sizeof(tinygltf::Camera), {}, {}},
-    {"lights", sizeof(tinygltf::Light), {}, {}}, // of KHR_lights_punctual
+    {"nodes", "", sizeof(tinygltf::Node) + bytesBesideANode},
+    {"materials", "", sizeof(tinygltf::Material)},
+    {"meshes", "", sizeof(tinygltf::Mesh)},
+    {"meshes", "primitives", sizeof(tinygltf::Primitive)},
+    {"accessors", "", sizeof(tinygltf::Accessor)},
+    {"buffers", "", sizeof(tinygltf::Buffer)},
+    {"bufferViews", "", sizeof(tinygltf::BufferView)},
+    {"animations", "", sizeof(tinygltf::Animation)},
+    {"animations", "channels", sizeof(tinygltf::AnimationChannel)},
+    {"animations", "samplers", sizeof(tinygltf::AnimationSampler)},
+    {"skins", "", sizeof(tinygltf::Skin)},
+    {"scenes", "", sizeof(tinygltf::Scene)},
+    {"textures", "", sizeof(tinygltf::Texture)},
+    {"samplers", "", sizeof(tinygltf::Sampler)},
+    {"images", "", sizeof(tinygltf::Image)},
+    {"cameras", "", sizeof(tinygltf::Camera)},
+    {"lights", "", sizeof(tinygltf::Light)}, // of KHR_lights_punctual
 };
-
-JsonValue elementsOf(const JsonValue& document, const List& list)
-{
-    return list.name == "lights" ? document["extensions"]["KHR_lights_punctual"]["lights"] : document[list.name];
-}
 
 /// Extras and variants become tinygltf::Values, which are more than twice as large as a value of the tree.
 std::size_t bytesOfValues(const JsonValue& json)
@@ -65,13 +60,9 @@ std::size_t bytesOf(const JsonValue& json, const List& list)
     std::size_t bytes = 0;
     for (const JsonValue& element : json)
     {
-        bytes += list.bytesAnElement + bytesOfValues(element["extras"]);
-        for (std::size_t i = 0; i < 2; ++i)
-            if (const JsonValue inner = list.inner[i].empty() ? JsonValue() : element[list.inner[i]])
-                bytes += inner.size() * list.bytesAnInnerElement[i];
-        if (list.name == "meshes")
-            for (const JsonValue& primitive : element["primitives"])
-                bytes += bytesOfVariants(primitive);
+        if (list.inner.empty()) bytes += list.bytesAnElement + bytesOfValues(element["extras"]);
+        for (const JsonValue& inner : list.inner.empty() ? JsonValue() : element[list.inner])
+            bytes += list.bytesAnElement + bytesOfVariants(inner);
     }
     return bytes;
 }
@@ -83,7 +74,9 @@ std::optional<Error> checkDocumentBytes(JsonTree& json, std::size_t limit)
     std::size_t bytes = json.size() * bytesOfJsonValue + bytesOfVariants(json.root());
     for (const List& list : lists)
     {
-        const JsonValue elements = elementsOf(json.root(), list);
+        const JsonValue root = json.root();
+        const JsonValue elements =
+            list.name == "lights" ? root["extensions"]["KHR_lights_punctual"]["lights"] : root[list.name];
         if (!elements || !elements.is(JsonTree::Type::Array)) continue;
         bytes += bytesOf(elements, list);
         if (bytes > limit)

@@ -46,8 +46,7 @@ int CharacterWriter::skinOf(const AnimationSet& set, const SkinnedGeometry& mesh
     const auto has = [&](const Entries& skin)
     {
         return std::all_of(used.begin(), used.end(),
-                           [&](std::size_t entry)
-                           { return std::find(skin.begin(), skin.end(), entry) != skin.end() || !isJoint(entry); });
+                           [&](std::size_t entry) { return contains(skin, entry) || !isJoint(entry); });
     };
     const auto known = std::find_if(_skins.begin(), _skins.end(), has);
     if (known != _skins.end()) return static_cast<int>(known - _skins.begin());
@@ -73,13 +72,7 @@ void CharacterWriter::addGroups(const AnimationSet& set, const std::vector<Chara
                     {}};
         if (group.joint < 0) group.skin = skinOf(set, *each.mesh);
         const auto same = std::find_if(_groups.begin(), _groups.end(),
-                                       [&](const Group& other)
-                                       {
-                                           return other.name == group.name && other.nodeName == group.nodeName &&
-                                                  other.joint == group.joint && other.skin == group.skin &&
-                                                  other.morph == group.morph && other.targets == group.targets &&
-                                                  other.isHidden == group.isHidden;
-                                       });
+                                       [&](const Group& other) { return other.key() == group.key(); });
         (same == _groups.end() ? _groups.emplace_back(std::move(group)) : *same).meshes.push_back(each);
     }
 }
@@ -93,23 +86,14 @@ bool CharacterWriter::needsNodeAbove(const AnimationSet& set) const
             joint = set.skeleton().joint(static_cast<std::size_t>(joint)).parent;
         return joint;
     };
-    for (std::size_t skin = 0; skin < _skins.size(); ++skin)
+    const auto hasRoots = [&](const Entries& skin)
     {
         std::set<int> roots;
-        for (const std::size_t entry : _skins[skin])
+        for (const std::size_t entry : skin)
             roots.insert(rootOf(set.palette()[entry].joint));
-        if (roots.size() > 1) return true;
-    }
-    return false;
-}
-
-void CharacterWriter::writeJoints(const Skeleton& skeleton, NodePlace* above, WrittenCharacter& made)
-{
-    for (const Joint& joint : skeleton.joints())
-    {
-        NodePlace* const parent = joint.parent < 0 ? above : &_nodes.placeOf(elementOf(made.nodeOfJoint, joint.parent));
-        made.nodeOfJoint.push_back(_nodes.add(joint.name, joint.rest, parent));
-    }
+        return roots.size() > 1;
+    };
+    return std::any_of(_skins.begin(), _skins.end(), hasRoots);
 }
 
 void CharacterWriter::writeSkins(const AnimationSet& set, WrittenCharacter& made)
@@ -189,7 +173,11 @@ WrittenCharacter CharacterWriter::write(const std::shared_ptr<const AnimationSet
         _skins.emplace_back(set->entriesOfSkin(skin).begin(), set->entriesOfSkin(skin).end());
     addGroups(*set, meshes);
     if (!toAbove.isIdentity() || needsNodeAbove(*set)) above = &_nodes.place(above, toAbove, name);
-    writeJoints(set->skeleton(), above, made);
+    for (const Joint& joint : set->skeleton().joints())
+    {
+        NodePlace* const parent = joint.parent < 0 ? above : &_nodes.placeOf(elementOf(made.nodeOfJoint, joint.parent));
+        made.nodeOfJoint.push_back(_nodes.add(joint.name, joint.rest, parent));
+    }
     writeSkins(*set, made);
     for (const Group& group : _groups)
         writeGroup(group, made);

@@ -15,8 +15,8 @@
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <vector>
-
 namespace osgGpuAnimation::gltf
 {
 
@@ -66,12 +66,13 @@ private:
         std::size_t targets = 0;
         bool isHidden = false;
         std::vector<CharacterMesh> meshes;
+
+        auto key() const { return std::tie(name, nodeName, joint, skin, morph, targets, isHidden); }
     };
 
     int skinOf(const AnimationSet& set, const SkinnedGeometry& mesh);
     void addGroups(const AnimationSet& set, const std::vector<CharacterMesh>& meshes);
     bool needsNodeAbove(const AnimationSet& set) const;
-    void writeJoints(const Skeleton& skeleton, NodePlace* above, WrittenCharacter& made);
     void writeSkins(const AnimationSet& set, WrittenCharacter& made);
     void writeGroup(const Group& group, WrittenCharacter& made);
 

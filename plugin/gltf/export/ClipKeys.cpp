@@ -15,11 +15,12 @@ namespace
 constexpr std::size_t numbersOfTrack = 12;
 constexpr std::size_t maxKeysOfPiece = 256; ///< bounds the time of joinedPieces(), the square of it
 
-/// One keyframe of a property. Tangents: multiplied by the length of their interval, as in Clip.
+/// One keyframe of a property.
 struct PropertyKey
 {
     float time = 0.0f;
-    std::vector<float> value, in, out;
+    std::vector<float> value;
+    std::vector<float> in, out; ///< slopes, as glTF's tangents are; empty: no spline
 };
 
 /// False for a slerped rotation of a Spline clip, see Clip.
@@ -42,10 +43,20 @@ std::vector<PropertyKey> allKeysOf(const Clip& clip, const ClipProperty& propert
                     clip.at(keyframe, property.track + at / numbersOfTrack)[number].number(at % numbersOfTrack));
             return numbers;
         };
+        // A clip's tangents are multiplied by the length of their interval.
+        const auto slopes = [&](std::size_t number, std::size_t from, std::size_t to)
+        {
+            const bool isInterval = from < to && to < clip.keyframeCount();
+            const double length = isInterval ? static_cast<double>(clip.times()[to]) - clip.times()[from] : 0.0;
+            std::vector<float> numbers = part(number);
+            for (float& tangent : numbers)
+                tangent = length > 0.0 ? static_cast<float>(tangent / length) : 0.0f;
+            return numbers;
+        };
         made.push_back({clip.times()[keyframe], part(0), {}, {}});
         if (!isSplineOf(clip, property)) continue;
-        made.back().in = part(1);
-        made.back().out = part(2);
+        made.back().in = slopes(1, keyframe - 1, keyframe);
+        made.back().out = slopes(2, keyframe, keyframe + 1);
     }
     return made;
 }
@@ -114,13 +125,10 @@ bool isOnePiece(const std::vector<PropertyKey>& keys, std::size_t first, std::si
 {
     const PropertyKey &from = keys[first], &to = keys[last];
     const double length = static_cast<double>(to.time) - from.time;
-    const double firstLength = static_cast<double>(keys[first + 1].time) - from.time,
-                 lastLength = static_cast<double>(to.time) - keys[last - 1].time;
-    if (!(firstLength > 0.0) || !(lastLength > 0.0)) return false;
     for (std::size_t number = 0; number < from.value.size(); ++number)
     {
         const double a = from.value[number], b = to.value[number];
-        const double out = from.out[number] * length / firstLength, in = to.in[number] * length / lastLength;
+        const double out = from.out[number] * length, in = to.in[number] * length;
         const double allowed = 1e-6 * std::max({std::abs(a), std::abs(b), std::abs(out), std::abs(in)});
         for (std::size_t i = first + 1; i < last; ++i)
         {
@@ -131,8 +139,8 @@ bool isOnePiece(const std::vector<PropertyKey>& keys, std::size_t first, std::si
             const double rate = slope(a, out, b, in, x) / length;
             if (!(before > 0.0) || !(after > 0.0) ||
                 std::abs(hermite(a, out, b, in, x) - key.value[number]) > allowed ||
-                std::abs(rate * before - key.in[number]) > allowed ||
-                std::abs(rate * after - key.out[number]) > allowed)
+                std::abs(rate - key.in[number]) * before > allowed ||
+                std::abs(rate - key.out[number]) * after > allowed)
                 return false;
         }
     }
@@ -147,36 +155,10 @@ std::vector<PropertyKey> joinedPieces(const std::vector<PropertyKey>& keys)
         std::size_t last = first + 1;
         while (last + 1 < keys.size() && last - first < maxKeysOfPiece && isOnePiece(keys, first, last + 1))
             ++last;
-        const auto scale = [&](std::vector<float>& tangent, double pieceLength)
-        {
-            const double length = static_cast<double>(keys[last].time) - keys[first].time;
-            for (float& number : tangent)
-                number = static_cast<float>(pieceLength > 0.0 ? number * length / pieceLength : 0.0);
-        };
-        scale(made.back().out, static_cast<double>(keys[first + 1].time) - keys[first].time);
         made.push_back(keys[last]);
-        scale(made.back().in, static_cast<double>(keys[last].time) - keys[last - 1].time);
         first = last;
     }
     return made;
-}
-
-/// glTF's tangents are slopes.
-void appendSpline(const std::vector<PropertyKey>& keys, std::vector<float>& out)
-{
-    for (std::size_t i = 0; i < keys.size(); ++i)
-    {
-        const auto appendSlope = [&](const std::vector<float>& tangent, std::size_t from, std::size_t to)
-        {
-            const double length =
-                to < keys.size() && from < to ? static_cast<double>(keys[to].time) - keys[from].time : 0.0;
-            for (const float number : tangent)
-                out.push_back(length > 0.0 ? static_cast<float>(number / length) : 0.0f);
-        };
-        appendSlope(keys[i].in, i - 1, i);
-        out.insert(out.end(), keys[i].value.begin(), keys[i].value.end());
-        appendSlope(keys[i].out, i, i + 1);
-    }
 }
 
 } // namespace
@@ -190,7 +172,7 @@ ClipKeys keysOf(const Clip& clip, const ClipProperty& property, const std::vecto
     const bool held = isHeld(keys);
     if (held && isAt(rest)) return made;
     const bool isConstant = held && isAt(keys.front().value);
-    bool isSpline = isSplineOf(clip, property) && !held;
+    const bool isSpline = isSplineOf(clip, property) && !held;
     if (held && !isConstant)
     {
         made.interpolation = "STEP";
@@ -204,12 +186,12 @@ ClipKeys keysOf(const Clip& clip, const ClipProperty& property, const std::vecto
     else
         keys = withoutHeldKeys(withoutJumps(std::move(keys)));
     for (const PropertyKey& key : keys)
+    {
         made.times.push_back(key.time);
-    if (isSpline)
-        appendSpline(keys, made.values);
-    else
-        for (const PropertyKey& key : keys)
-            made.values.insert(made.values.end(), key.value.begin(), key.value.end());
+        if (isSpline) made.values.insert(made.values.end(), key.in.begin(), key.in.end());
+        made.values.insert(made.values.end(), key.value.begin(), key.value.end());
+        if (isSpline) made.values.insert(made.values.end(), key.out.begin(), key.out.end());
+    }
     return made;
 }
 

@@ -89,6 +89,14 @@ void appendColor(const osg::Vec4& color, std::vector<float>& out)
     out.insert(out.end(), {color.x(), color.y(), color.z(), color.w()});
 }
 
+/// The displayed colour of a vertex; white if there is none. colors: four numbers each, one for all or for each vertex.
+osg::Vec4 colorOf(const std::vector<float>& colors, bool isOfEach, std::size_t vertex)
+{
+    const std::size_t at = isOfEach ? 4 * vertex : 0;
+    if (at + 3 >= colors.size()) return osg::Vec4(1, 1, 1, 1);
+    return osg::Vec4(colors[at], colors[at + 1], colors[at + 2], colors[at + 3]);
+}
+
 /// Two of the components of each element; glTF counts v from the top.
 std::vector<float> textureCoordinatesOf(const osg::Array& array, std::size_t components, std::size_t first)
 {
@@ -219,13 +227,6 @@ bool isDrawable(const IndexedPart& part)
     return part.indices.size() >= min;
 }
 
-bool isLitByFaces(const osg::StateSet& state)
-{
-    bool flat = false;
-    const osg::Uniform* const uniform = state.getUniform("flatNormals");
-    return uniform && uniform->get(flat) && flat;
-}
-
 } // namespace
 
 double GeometryWriter::radiusOf(const osg::Geometry& geometry)
@@ -300,7 +301,7 @@ GeometryWriter::Attributes GeometryWriter::attributesOf(const osg::Geometry& geo
         add(made, name, array, vertices, components, make);
     };
     const osg::Array* const normals = geometry.getNormalArray();
-    if (isOfEachVertex(normals, vertices) && !isLitByFaces(state)) addUnit("NORMAL", normals, 3);
+    if (isOfEachVertex(normals, vertices) && !hasTrueUniform(state, "flatNormals")) addUnit("NORMAL", normals, 3);
     const osg::Array* const tangents = geometry.getVertexAttribArray(POSE_TANGENT_LOCATION);
     if (isOfEachVertex(tangents, vertices) && made.contains("NORMAL")) addUnit("TANGENT", tangents, 4);
     const osg::Array* const coordinates = geometry.getTexCoordArray(0);
@@ -322,13 +323,7 @@ GeometryWriter::Attributes GeometryWriter::attributesOf(const osg::Geometry& geo
                      "); written as white");
     Values written;
     for (std::size_t vertex = 0; vertex < vertices; ++vertex)
-    {
-        const std::size_t at = isOfEachVertex(colors, vertices) ? 4 * vertex : 0;
-        const bool isThere = at + 3 < display.size();
-        appendColor(isThere ? writtenColor({display[at], display[at + 1], display[at + 2], display[at + 3]})
-                            : osg::Vec4(1, 1, 1, 1),
-                    written);
-    }
+        appendColor(writtenColor(colorOf(display, isOfEachVertex(colors, vertices), vertex)), written);
     made["COLOR_0"] = _writer.addFloats(finite(std::move(written)), "VEC4", GlbWriter::Use::Vertices);
     return made;
 }
@@ -418,10 +413,7 @@ json GeometryWriter::targetsOf(const SkinnedGeometry& mesh, const Attributes& ba
             Values written;
             for (std::size_t vertex = 0; vertex < vertices; ++vertex)
             {
-                const std::size_t at = isColored ? 4 * vertex : 0;
-                const osg::Vec4 own = at + 3 < display.size()
-                                          ? osg::Vec4(display[at], display[at + 1], display[at + 2], display[at + 3])
-                                          : osg::Vec4(1, 1, 1, 1);
+                const osg::Vec4 own = colorOf(display, isColored, vertex);
                 appendColor(writtenColor(own + (*target.colors)[static_cast<unsigned int>(vertex)]) - writtenColor(own),
                             written);
             }

@@ -2,6 +2,7 @@
 #include "gltf/export/GlbWriter.h"
 
 #include "gltf/document/MemoryBudget.h"
+#include "gltf/file/Elements.h"
 #include "gltf/file/ImportOptions.h"
 
 #include <algorithm>
@@ -134,7 +135,7 @@ std::size_t GlbWriter::addJoints(const std::vector<std::uint16_t>& joints)
 void GlbWriter::useExtension(const std::string& name)
 {
     nlohmann::json& used = document["extensionsUsed"];
-    if (std::find(used.begin(), used.end(), name) == used.end()) used.push_back(name);
+    if (!contains(used, name)) used.push_back(name);
 }
 
 Result<std::string> GlbWriter::glb(Report& report) const

@@ -12,6 +12,13 @@
 namespace osgGpuAnimation::gltf
 {
 
+bool hasTrueUniform(const osg::StateSet& state, const char* name)
+{
+    bool value = false;
+    const osg::Uniform* const uniform = state.getUniform(name);
+    return uniform && uniform->get(value) && value;
+}
+
 namespace
 {
 
@@ -30,13 +37,6 @@ json numbersOf(const osg::Vec4& color)
 bool isOn(const osg::StateSet& state, GLenum mode)
 {
     return (state.getMode(mode) & osg::StateAttribute::ON) != 0;
-}
-
-bool hasTrueUniform(const osg::StateSet& state, const char* name)
-{
-    bool value = false;
-    const osg::Uniform* const uniform = state.getUniform(name);
-    return uniform && uniform->get(value) && value;
 }
 
 bool isUnlitState(const osg::StateSet& state)
@@ -89,8 +89,6 @@ bool limitFactors(PbrMaterial& material)
     return isLimited;
 }
 
-} // namespace
-
 PbrMaterial fixedMaterialOf(const osg::StateSet& state)
 {
     PbrMaterial made;
@@ -111,6 +109,8 @@ PbrMaterial fixedMaterialOf(const osg::StateSet& state)
     made.baseColorMap.texture = const_cast<osg::Texture2D*>(dynamic_cast<const osg::Texture2D*>(texture));
     return made;
 }
+
+} // namespace
 
 void MaterialWriter::addMap(json& to, const char* member, const PbrMaterial::Map& map)
 {

@@ -45,7 +45,5 @@ private:
     std::map<std::string, std::size_t> _materials; ///< by text
 };
 
-/// The StateSet's texture of unit 0 is shown without a PbrMaterial, as OSG's fixed pipeline does.
-PbrMaterial fixedMaterialOf(const osg::StateSet& state);
-
+bool hasTrueUniform(const osg::StateSet& state, const char* name);
 } // namespace osgGpuAnimation::gltf

@@ -53,7 +53,7 @@ NodePlace& NodeWriter::place(NodePlace* above, const osg::Matrixd& toAbove, cons
 
 NodePlace& NodeWriter::placeOf(std::size_t node)
 {
-    _places.push_back({nullptr, {}, "", node, _depths[node], _reaches[node]});
+    _places.push_back({nullptr, {}, "", node, _ofNode[node].first, _ofNode[node].second});
     return _places.back();
 }
 
@@ -67,22 +67,14 @@ std::size_t NodeWriter::add(const std::string& name, const JointTransform& toAbo
     if (glm::vec3(t) != glm::vec3(0.0f)) node["translation"] = {t.x, t.y, t.z};
     if (r != glm::vec4(0, 0, 0, 1)) node["rotation"] = {r.x, r.y, r.z, r.w};
     if (glm::vec3(s) != glm::vec3(1.0f)) node["scale"] = {s.x, s.y, s.z};
-    if (above) nodeOf(*above); // exists first
+    const auto [depth, reach] = above ? _ofNode[nodeOf(*above)] : std::pair(std::size_t(0), TransformBound());
     const std::size_t number = append(_writer.document["nodes"], std::move(node));
-    _depths.push_back(1 + (above ? _depths[*above->node] : 0));
-    _reaches.push_back((above ? _reaches[*above->node] : TransformBound()) * TransformBound::of(toAbove));
+    _ofNode.emplace_back(depth + 1, reach * TransformBound::of(toAbove));
     if (above)
         at(*above->node)["children"].push_back(number);
     else
         _writer.document["scenes"][0]["nodes"].push_back(number);
     return number;
-}
-
-std::size_t NodeWriter::add(const std::string& name, const NodeTransform& toAbove, NodePlace* above)
-{
-    if (!toAbove.outer) return add(name, toAbove.inner, above);
-    NodePlace& outer = placeOf(add(name.empty() ? name : name + " shear", *toAbove.outer, above));
-    return add(name, toAbove.inner, &outer);
 }
 
 std::size_t NodeWriter::nodeOf(NodePlace& place)
@@ -91,7 +83,13 @@ std::size_t NodeWriter::nodeOf(NodePlace& place)
     for (NodePlace* each = &place; each && !each->node; each = each->above)
         missing.push_back(each);
     for (auto each = missing.rbegin(); each != missing.rend(); ++each) // a node above exists first: no recursion
-        (*each)->node = add((*each)->name, (*each)->toAbove, (*each)->above);
+    {
+        const std::string& name = (*each)->name;
+        NodePlace* above = (*each)->above;
+        if (const std::optional<JointTransform>& outer = (*each)->toAbove.outer)
+            above = &placeOf(add(name.empty() ? name : name + " shear", *outer, above));
+        (*each)->node = add(name, (*each)->toAbove.inner, above);
+    }
     return *place.node;
 }
 

@@ -17,6 +17,7 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace osgGpuAnimation::gltf
@@ -71,14 +72,11 @@ public:
     nlohmann::json& at(std::size_t node) { return _writer.document["nodes"][node]; }
 
 private:
-    std::size_t add(const std::string& name, const NodeTransform& toAbove, NodePlace* above);
-
     GlbWriter& _writer;
     Report& _report;
     std::deque<NodePlace> _places; ///< keeps addresses
-    // By node:
-    std::vector<std::size_t> _depths;     ///< the nodes from a root to it
-    std::vector<TransformBound> _reaches; ///< from it to the scene
+    /// By node: the nodes from a root to it, and the bound from it to the scene.
+    std::vector<std::pair<std::size_t, TransformBound>> _ofNode;
 };
 
 } // namespace osgGpuAnimation::gltf

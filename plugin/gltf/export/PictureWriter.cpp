@@ -17,20 +17,11 @@ namespace
 int pngChannels(const osg::Image& image)
 {
     if (image.getDataType() != GL_UNSIGNED_BYTE && image.getDataType() != GL_UNSIGNED_SHORT) return 0;
-    switch (image.getPixelFormat())
-    {
-    case GL_LUMINANCE:
-    case GL_RED:
-        return 1;
-    case GL_LUMINANCE_ALPHA:
-        return 2;
-    case GL_RGB:
-        return 3;
-    case GL_RGBA:
-        return 4;
-    default:
-        return 0;
-    }
+    constexpr std::pair<GLenum, int> formats[] = {
+        {GL_LUMINANCE, 1}, {GL_RED, 1}, {GL_LUMINANCE_ALPHA, 2}, {GL_RGB, 3}, {GL_RGBA, 4}};
+    for (const auto& [format, channels] : formats)
+        if (image.getPixelFormat() == format) return channels;
+    return 0;
 }
 
 osg::ref_ptr<osg::Image> asRgba(const osg::Image& image)

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
+#include <iterator>
 #include <utility>
-
 namespace osgGpuAnimation::gltf
 {
 
@@ -20,4 +21,9 @@ decltype(auto) elementOf(List&& list, int number)
 template <typename List, typename Number>
 void elementOf(List&&, Number) = delete; // no cast is needed
 
+template <typename List, typename Value>
+bool contains(const List& list, const Value& value)
+{
+    return std::find(std::begin(list), std::end(list), value) != std::end(list);
+}
 } // namespace osgGpuAnimation::gltf

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <type_traits>
 
 namespace osgGpuAnimation::gltf
 {
@@ -15,41 +16,63 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
-/// False if the text is not a whole number from 0 to the largest Number.
+/// False if the text is not a whole number from 0 to the largest Number, or not a finite number.
 template <typename Number>
 bool read(const std::string& text, Number& out)
 {
     const std::optional<Number> number = parsedNumber<Number>(text);
     if (number) out = *number;
-    return number && *number >= 0;
+    if constexpr (std::is_floating_point_v<Number>)
+        return number && std::isfinite(*number);
+    else
+        return number && *number >= 0;
 }
 
-/// False if the text is not a finite number.
-template <>
-bool read(const std::string& text, double& out)
+/// A flag, whatever the text.
+bool read(const std::string&, bool& out)
 {
-    const std::optional<double> number = parsedNumber<double>(text);
-    if (number) out = *number;
-    return number && std::isfinite(*number);
+    return out = true;
 }
 
-bool readLoopMode(const std::string& text, LoopMode& out)
+bool read(const std::string& text, std::string& out)
 {
-    if (text == "once") out = LoopMode::Once;
-    if (text == "loop") out = LoopMode::Loop;
-    if (text == "pingpong") out = LoopMode::PingPong;
-    return text == "once" || text == "loop" || text == "pingpong";
+    return !(out = text).empty();
 }
 
-bool readClipMatch(const std::string& text, ClipMatch& out)
+bool read(const std::string& text, std::vector<std::string>& out)
 {
-    for (const auto& [word, match] : clipMatches)
+    return read(text, out.emplace_back());
+}
+
+template <typename Value>
+bool read(const std::string& text, std::optional<Value>& out)
+{
+    return read(text, out.emplace());
+}
+
+/// False if the text is none of the words.
+template <typename Words, typename Value>
+bool choose(const Words& words, const std::string& text, Value& out)
+{
+    for (const auto& [word, value] : words)
         if (text == word)
         {
-            out = match;
+            out = value;
             return true;
         }
     return false;
+}
+
+bool read(const std::string& text, LoopMode& out)
+{
+    constexpr std::pair<const char*, LoopMode> loopModes[] = {
+        {"once", LoopMode::Once}, {"loop", LoopMode::Loop}, {"pingpong", LoopMode::PingPong}};
+    return choose(loopModes, text, out);
+}
+
+bool read(const std::string& text, ClipMatch& out)
+{
+    return choose(clipMatches, text, out);
 }
 
 struct Option
@@ -61,23 +84,10 @@ struct Option
     bool (*set)(const std::string& value, ImportOptions& options);
 };
 
-/// Sets a flag, whatever the value.
-template <bool ImportOptions::*flag>
-bool setFlag(const std::string&, ImportOptions& options)
+template <auto member>
+bool set(const std::string& value, ImportOptions& options)
 {
-    return options.*flag = true;
-}
-
-template <std::optional<std::string> ImportOptions::*text>
-bool setText(const std::string& value, ImportOptions& options)
-{
-    return !(options.*text).emplace(value).empty();
-}
-
-template <std::size_t ImportOptions::*limit>
-bool setLimit(const std::string& value, ImportOptions& options)
-{
-    return read(value, options.*limit);
+    return read(value, options.*member);
 }
 
 const std::vector<Option>& allOptions()
@@ -86,31 +96,25 @@ const std::vector<Option>& allOptions()
     static const char* const seconds = "a number of seconds, 0 or more";
     static const std::vector<Option> all = {
         {"clip=NAME|INDEX", "the clip that plays at first, by name or by number; default: the first",
-         "a name or a number", setText<&ImportOptions::clip>},
+         "a name or a number", set<&ImportOptions::clip>},
         {"clips=FILE",
          "adds the clips of another file of any format with a reader, for the joints of the same names; "
          "may come again",
-         "the name of a file",
-         [](const std::string& value, ImportOptions& options)
-         { return !options.clipsFiles.emplace_back(value).empty(); }},
+         "the name of a file", set<&ImportOptions::clipsFiles>},
         {"clipJoints=FILE", "joints of the model and their counterparts in clips=FILE, as JSON: {\"Hips\": \"pelvis\"}",
-         "the name of a file",
-         [](const std::string& value, ImportOptions& options) { return !(options.clipJoints = value).empty(); }},
+         "the name of a file", set<&ImportOptions::clipJoints>},
         {"clipMatch=auto|byName|retarget",
          "byName: joints take the transforms of clips=FILE as they are; retarget: their difference from rest; default: "
          "auto",
-         "auto, byName or retarget",
-         [](const std::string& value, ImportOptions& options) { return readClipMatch(value, options.clipMatch); }},
+         "auto, byName or retarget", set<&ImportOptions::clipMatch>},
         {"start=SECONDS", "start time in that clip; beyond its end: its end", seconds,
          [](const std::string& value, ImportOptions& options)
-         { return read(value, options.start.emplace()) && *options.start >= 0.0; }},
+         { return read(value, options.start) && *options.start >= 0.0; }},
         {"randomStart=SEED", "each load starts at another time of the clip, unless start is given; default: all at 0",
-         number,
-         [](const std::string& value, ImportOptions& options) { return read(value, options.randomStart.emplace()); }},
-        {"speed=NUMBER", "playback speed; negative: backwards; default: 1", "a number",
-         [](const std::string& value, ImportOptions& options) { return read(value, options.speed); }},
+         number, set<&ImportOptions::randomStart>},
+        {"speed=NUMBER", "playback speed; negative: backwards; default: 1", "a number", set<&ImportOptions::speed>},
         {"loop=once|loop|pingpong", "behaviour at the clip's end; default: loop", "once, loop or pingpong",
-         [](const std::string& value, ImportOptions& options) { return readLoopMode(value, options.loopMode); }},
+         set<&ImportOptions::loopMode>},
         {"fade=SECONDS", "duration of the keys' crossfades; default: 0.3", seconds,
          [](const std::string& value, ImportOptions& options)
          { return read(value, options.fadeSeconds) && options.fadeSeconds >= 0.0; }},
@@ -118,42 +122,39 @@ const std::vector<Option>& allOptions()
          "compact clips with an error of at most that fraction of the model's longest side; default: exact",
          "a number above 0, at most 1",
          [](const std::string& value, ImportOptions& options)
-         { return read(value, options.compact.emplace()) && *options.compact > 0.0 && *options.compact <= 1.0; }},
+         { return read(value, options.compact) && *options.compact > 0.0 && *options.compact <= 1.0; }},
         {"pixelError=PIXELS",
          "fewer triangles while the error stays below that size on screen; default: 0, all triangles",
          LodRange::describePixelErrors(),
          [](const std::string& value, ImportOptions& options)
          { return read(value, options.pixelError) && LodRange::isPixelError(options.pixelError); }},
-        {"noKeys", "no keys for viewers on the character; default: n N k . , - + r j", "",
-         setFlag<&ImportOptions::noKeys>},
-        {"scene=INDEX", "the scene to show; default: the file's own", number,
-         [](const std::string& value, ImportOptions& options) { return read(value, options.scene.emplace()); }},
+        {"noKeys", "no keys for viewers on the character; default: n N k . , - + r j", "", set<&ImportOptions::noKeys>},
+        {"scene=INDEX", "the scene to show; default: the file's own", number, set<&ImportOptions::scene>},
         {"lighting=pbr|fixed", "the materials' own look, or that of the fixed pipeline; default: pbr", "pbr or fixed",
          [](const std::string& value, ImportOptions& options)
          { return (options.fixedLighting = value == "fixed") || value == "pbr"; }},
         {"variant=NAME|INDEX", "the variant of the file's materials, by name or by number; default: none",
-         "a name or a number", setText<&ImportOptions::variant>},
+         "a name or a number", set<&ImportOptions::variant>},
         {"camera=NAME|INDEX", "the camera that a viewer looks through at first; default: the viewer's own view",
-         "a name or a number", setText<&ImportOptions::camera>},
+         "a name or a number", set<&ImportOptions::camera>},
         {"wholeModel", "meshes that do not move are part of the animated character, too, so that crowds show them", "",
-         setFlag<&ImportOptions::wholeModel>},
-        {"noCameras", "leave the file's cameras out", "", setFlag<&ImportOptions::noCameras>},
-        {"noLights", "leave the file's lights out; default: GL's lights 1 to 7", "", setFlag<&ImportOptions::noLights>},
-        {"noRotation", "keep glTF's +Y up; default: +Z up", "", setFlag<&ImportOptions::noRotation>},
+         set<&ImportOptions::wholeModel>},
+        {"noCameras", "leave the file's cameras out", "", set<&ImportOptions::noCameras>},
+        {"noLights", "leave the file's lights out; default: GL's lights 1 to 7", "", set<&ImportOptions::noLights>},
+        {"noRotation", "keep glTF's +Y up; default: +Z up", "", set<&ImportOptions::noRotation>},
         {"allowOutsideFiles", "let a model read files outside its own folder, also for clips", "",
-         setFlag<&ImportOptions::allowOutsideFiles>},
+         set<&ImportOptions::allowOutsideFiles>},
         {"maxJsonBytes=N", "bytes of the JSON text, data URIs included; default: 512 MiB", number,
-         setLimit<&ImportOptions::maxJsonBytes>},
-        {"maxJsonDepth=N", "nesting depth of the JSON; default: 256", number, setLimit<&ImportOptions::maxJsonDepth>},
+         set<&ImportOptions::maxJsonBytes>},
+        {"maxJsonDepth=N", "nesting depth of the JSON; default: 256", number, set<&ImportOptions::maxJsonDepth>},
         {"maxNodeDepth=N",
          system::isWindows ? "nodes from a root to a leaf; default: 512" : "nodes from a root to a leaf; default: 4096",
-         number, setLimit<&ImportOptions::maxNodeDepth>},
-        {"maxElements=N", "elements of any one array; default: 16777216", number,
-         setLimit<&ImportOptions::maxElements>},
+         number, set<&ImportOptions::maxNodeDepth>},
+        {"maxElements=N", "elements of any one array; default: 16777216", number, set<&ImportOptions::maxElements>},
         {"maxDocumentBytes=N", "bytes of nodes, materials, channels ... in memory; default: 448 MiB", number,
-         setLimit<&ImportOptions::maxDocumentBytes>},
+         set<&ImportOptions::maxDocumentBytes>},
         {"maxDecodedBytes=N", "bytes of buffers, arrays and pictures, all together; default: 2 GiB", number,
-         setLimit<&ImportOptions::maxDecodedBytes>},
+         set<&ImportOptions::maxDecodedBytes>},
     };
     return all;
 }

@@ -15,6 +15,7 @@ const std::uint64_t maxBytesOfAFile = std::uint64_t(1) << 32; // a GLB stores it
 const std::string_view magic = "glTF";
 const std::size_t headerBytes = 12;
 const std::size_t chunkHeaderBytes = 8;
+const std::size_t bytesBeforeJson = headerBytes + chunkHeaderBytes; // in a GLB
 const std::uint32_t jsonType = 0x4E4F534A;
 const std::uint32_t binaryType = 0x004E4942;
 
@@ -43,7 +44,7 @@ Result<std::string_view> checkHeader(std::string_view bytes, Report& report)
     if (bytes.size() < headerBytes)
         return fault("GLB header", bytesText(headerBytes), bytesText(bytes.size()) + ": the file is truncated");
     const std::uint32_t version = littleEndian(bytes, 4);
-    if (version != 2) return fault("GLB header", "container version 2", std::to_string(version));
+    if (version != 2) return fault("GLB header", "container version 2", version);
     const std::uint32_t length = littleEndian(bytes, 8);
     if (length > bytes.size())
         return fault("GLB header", "a file of " + bytesText(length),
@@ -62,7 +63,7 @@ Result<Chunk> readChunk(std::string_view glb, std::size_t at, std::size_t number
     if (left < chunkHeaderBytes) return fault(name, "a header of 8 bytes", bytesText(left));
     const std::uint32_t length = littleEndian(glb, at);
     if (length > left - chunkHeaderBytes)
-        return fault(name, "a length of at most " + bytesText(left - chunkHeaderBytes), std::to_string(length));
+        return fault(name, "a length of at most " + bytesText(left - chunkHeaderBytes), length);
     return Chunk{littleEndian(glb, at + 4), glb.substr(at + chunkHeaderBytes, length)};
 }
 
@@ -76,12 +77,13 @@ void takeChunk(const Chunk& chunk, std::size_t number, GlbContainer& container, 
         report.warn("GLB chunk " + std::to_string(number) + ": its length is no multiple of 4");
 }
 
-std::optional<Error> checkBeginning(const RegularFile& file, std::size_t maxJsonBytes)
+/// The length of the JSON text by the first bytesBeforeJson bytes of a file: the file's length if it is not a GLB, and
+/// at most the bytes that follow.
+std::size_t claimedJsonBytes(std::string_view beginning, std::size_t fileBytes)
 {
-    std::string beginning(std::min(file.size(), bytesBeforeJson), '\0');
-    const Result<std::size_t> read = file.read(beginning.data(), beginning.size());
-    if (!read) return read.error();
-    return checkJsonBytes(claimedJsonBytes(beginning, file.size()), maxJsonBytes);
+    if (beginning.substr(0, magic.size()) != magic) return fileBytes;
+    if (beginning.size() < bytesBeforeJson) return 0;
+    return std::min<std::size_t>(littleEndian(beginning, headerBytes), fileBytes - bytesBeforeJson);
 }
 
 } // namespace
@@ -112,24 +114,21 @@ Result<GlbContainer> splitContainer(std::string_view bytes, Report& report)
     return container;
 }
 
-std::size_t claimedJsonBytes(std::string_view beginning, std::size_t fileBytes)
-{
-    if (beginning.substr(0, magic.size()) != magic) return fileBytes;
-    if (beginning.size() < bytesBeforeJson) return 0;
-    return std::min<std::size_t>(littleEndian(beginning, headerBytes), fileBytes - bytesBeforeJson);
-}
-
 std::optional<Error> checkJsonBytes(std::size_t bytes, std::size_t limit)
 {
     if (bytes <= limit) return std::nullopt;
-    return fault("JSON", "a text of at most " + bytesText(limit) + " (limit maxJsonBytes)", std::to_string(bytes));
+    return fault("JSON", "a text of at most " + bytesText(limit) + " (limit maxJsonBytes)", bytes);
 }
 
 Result<std::string> readModelFile(const std::string& path, const ImportOptions& options)
 {
     const Result<RegularFile> file = RegularFile::open(path);
     if (!file) return file.error();
-    if (const std::optional<Error> error = checkBeginning(file.value(), options.maxJsonBytes)) return *error;
+    std::string beginning(std::min(file.value().size(), bytesBeforeJson), '\0');
+    const Result<std::size_t> read = file.value().read(beginning.data(), beginning.size());
+    if (!read) return read.error();
+    const std::size_t json = claimedJsonBytes(beginning, file.value().size());
+    if (const std::optional<Error> error = checkJsonBytes(json, options.maxJsonBytes)) return *error;
     return file.value().readWhole(maxBytesOfAFile);
 }
 

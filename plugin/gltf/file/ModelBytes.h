@@ -27,12 +27,6 @@ struct GlbContainer
 /// Errors: an empty or truncated file, a container version other than 2, lengths that do not fit, no JSON chunk.
 Result<GlbContainer> splitContainer(std::string_view bytes, Report& report);
 
-constexpr std::size_t bytesBeforeJson = 20; ///< in a GLB: its header and that of the first chunk
-
-/// The length of the JSON text by the first bytesBeforeJson bytes of a file: the file's length if it is not a GLB, and
-/// at most the bytes that follow.
-std::size_t claimedJsonBytes(std::string_view beginning, std::size_t fileBytes);
-
 /// Error: more than the limit ImportOptions::maxJsonBytes.
 std::optional<Error> checkJsonBytes(std::size_t bytes, std::size_t limit);
 

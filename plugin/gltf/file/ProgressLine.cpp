@@ -46,18 +46,13 @@ void ProgressLine::run()
     const auto isOver = [this] { return _isOver; };
     if (_change.wait_for(lock, delay, isOver)) return;
     do
-        write();
-    while (!_change.wait_for(lock, interval, isOver));
+    {
+        const auto seconds =
+            std::chrono::duration_cast<std::chrono::seconds>(std::chrono::steady_clock::now() - _begin).count();
+        std::cerr << clear << _work << ": ";
+        if (_all > 0) std::cerr << _done << " of " << _all << ", ";
+        std::cerr << seconds << " s" << std::flush;
+    } while (!_change.wait_for(lock, interval, isOver));
     std::cerr << clear << std::flush;
 }
-
-void ProgressLine::write() const
-{
-    const auto seconds =
-        std::chrono::duration_cast<std::chrono::seconds>(std::chrono::steady_clock::now() - _begin).count();
-    std::cerr << clear << _work << ": ";
-    if (_all > 0) std::cerr << _done << " of " << _all << ", ";
-    std::cerr << seconds << " s" << std::flush;
-}
-
 } // namespace osgGpuAnimation::gltf

@@ -28,8 +28,6 @@ public:
 
 private:
     void run();
-    void write() const;
-
     const std::string _work;
     const std::chrono::steady_clock::time_point _begin = std::chrono::steady_clock::now();
     std::mutex _mutex;

@@ -20,8 +20,6 @@ void add(std::vector<std::string>& list, std::size_t& count, std::string message
 
 } // namespace
 
-Report::Report(Messages& messages) : _messages(messages) {}
-
 void Report::warn(std::string message)
 {
     add(_messages.warnings, _warnings, std::move(message));

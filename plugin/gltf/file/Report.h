@@ -30,8 +30,7 @@ struct Messages
 class Report
 {
 public:
-    explicit Report(Messages& messages);
-
+    explicit Report(Messages& messages) : _messages(messages) {}
     void warn(std::string message);
     void note(std::string message);
     /// A warning of both, about a request of the caller: `clips "run.glb": the file has no clips`, what follows from
@@ -91,7 +90,10 @@ std::string numberText(double number);
 
 /// `element: expected …, found …`
 Error fault(std::string_view element, std::string_view expected, std::string_view found);
-
+inline Error fault(std::string_view element, std::string_view expected, std::size_t found)
+{
+    return fault(element, expected, std::to_string(found));
+}
 /// `expected …, found …`, for callers that name the element.
 Error unexpected(const std::string& expected, const std::string& found);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/file/SavedFile.h"
 
+#include "gltf/file/Elements.h"
 #include <osgGpuAnimation/math/detail/System.h>
 
 #include <algorithm>
@@ -62,7 +63,7 @@ int replaceFile(const std::string& target, const fs::file_status& status, std::s
 bool isOfFolder(int code)
 {
     constexpr int codes[] = {EACCES, EPERM, EROFS, EBUSY, EXDEV, ENAMETOOLONG};
-    return std::find(std::begin(codes), std::end(codes), code) != std::end(codes);
+    return contains(codes, code);
 }
 
 } // namespace

@@ -198,11 +198,6 @@ Result<std::string> decodePath(std::string_view uri)
     return path;
 }
 
-ModelFolder::ModelFolder(std::string modelFile, bool allowOutsideFiles)
-    : _modelFile(std::move(modelFile)), _allowOutsideFiles(allowOutsideFiles)
-{
-}
-
 Result<RegularFile> ModelFolder::open(std::string_view uri) const
 {
     const Result<std::string> path = decodePath(uri);
@@ -210,16 +205,6 @@ Result<RegularFile> ModelFolder::open(std::string_view uri) const
     if (_modelFile.empty())
         return Error{"expected data in the model itself, which came without a file name, found " + quoted(uri)};
     return openPath(path.value());
-}
-
-Result<RegularFile> ModelFolder::openPath(const std::string& path) const
-{
-    const Result<std::string> resolved = resolve(path);
-    if (!resolved) return resolved.error();
-    Result<RegularFile> file = RegularFile::open(resolved.value());
-    if (!file) return Error{quoted(path) + ": " + file.error().message};
-    if (file.value().isSameAs(_modelFile)) return Error{"expected a file of its own, found the model file itself"};
-    return file;
 }
 
 // On Windows not every text can be a file name.
@@ -241,22 +226,24 @@ catch (const std::system_error& fault)
     return noFileName(path, fault);
 }
 
-Result<std::string> ModelFolder::resolve(const std::string& path) const
+Result<RegularFile> ModelFolder::openPath(const std::string& path) const
 try
 {
     // Check the text first: files outside the folder are never looked up.
     if (!_allowOutsideFiles && leavesFolder(path)) return outside(path);
     const fs::path folder = folderOf(_modelFile);
     std::error_code error;
-    const fs::path file = fs::canonical(folder / path, error);
+    const fs::path found = fs::canonical(folder / path, error);
     if (error == std::errc::no_such_file_or_directory || error == std::errc::not_a_directory)
         return Error{"expected a file, found that " + quoted(path) + " does not exist"};
     if (error) return Error{"expected a file, found " + quoted(path) + ": " + error.message()};
-    if (_allowOutsideFiles) return file.string();
-    const fs::path home = fs::canonical(folder, error);
+    const fs::path home = _allowOutsideFiles ? fs::path() : fs::canonical(folder, error);
     if (error) return Error{"the model's folder cannot be found: " + error.message()};
-    if (!isBelow(file, home)) return outside(path);
-    return file.string();
+    if (!_allowOutsideFiles && !isBelow(found, home)) return outside(path);
+    Result<RegularFile> file = RegularFile::open(found.string());
+    if (!file) return Error{quoted(path) + ": " + file.error().message};
+    if (file.value().isSameAs(_modelFile)) return Error{"expected a file of its own, found the model file itself"};
+    return file;
 }
 catch (const std::system_error& fault)
 {

@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
-
 namespace osgGpuAnimation::gltf
 {
 
@@ -45,8 +45,10 @@ class ModelFolder
 {
 public:
     /// modelFile: may be empty (a stream).
-    ModelFolder(std::string modelFile, bool allowOutsideFiles);
-
+    ModelFolder(std::string modelFile, bool allowOutsideFiles)
+        : _modelFile(std::move(modelFile)), _allowOutsideFiles(allowOutsideFiles)
+    {
+    }
     /// Opens the file of a URI that is not a data URI. Errors are `expected …, found …` or name the file.
     Result<RegularFile> open(std::string_view uri) const;
 
@@ -57,8 +59,6 @@ public:
     Result<std::string> find(const std::string& path) const;
 
 private:
-    Result<std::string> resolve(const std::string& path) const;
-
     std::string _modelFile;
     bool _allowOutsideFiles;
 };

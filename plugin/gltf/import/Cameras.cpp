@@ -4,12 +4,9 @@
 #include "gltf/data/AnimationPointers.h"
 #include "gltf/data/UniqueNames.h"
 #include "gltf/file/Elements.h"
-#include "gltf/file/Report.h"
-
 #include <osg/Math>
 #include <osg/ValueObject>
 
-#include <algorithm>
 #include <cmath>
 
 namespace osgGpuAnimation::gltf
@@ -51,23 +48,6 @@ std::vector<ImportedCamera> makeCameras(const tinygltf::Model& model, const Node
         cameras.back().view->setName(names.unique(name.empty() ? "camera " + std::to_string(node.camera) : name));
     }
     return cameras;
-}
-
-Result<std::size_t> chooseCamera(const std::vector<ImportedCamera>& cameras, const std::string& nameOrNumber)
-{
-    const int number = parsedNumber<int>(nameOrNumber).value_or(-1);
-    const auto named =
-        std::find_if(cameras.begin(), cameras.end(),
-                     [&](const ImportedCamera& camera) { return camera.view->getName() == nameOrNumber; });
-    const auto numbered = std::find_if(cameras.begin(), cameras.end(),
-                                       [&](const ImportedCamera& camera) { return camera.camera == number; });
-    const auto found = named != cameras.end() ? named : numbered;
-    if (found != cameras.end()) return static_cast<std::size_t>(found - cameras.begin());
-    std::string names;
-    for (const ImportedCamera& camera : cameras)
-        names += (names.empty() ? "" : ", ") + quoted(camera.view->getName());
-    return Error{"camera " + quoted(nameOrNumber) +
-                 " was asked for; the scene's cameras are: " + (names.empty() ? "none" : names)};
 }
 
 } // namespace osgGpuAnimation::gltf

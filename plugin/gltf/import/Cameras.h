@@ -26,8 +26,4 @@ struct ImportedCamera
 /// The cameras at the nodes of the drawn part, by node.
 std::vector<ImportedCamera> makeCameras(const tinygltf::Model& model, const NodeTree& tree);
 
-/// The index of a camera: by the name of its view, else the first with the file's number.
-/// Error: there is none; the message lists the names.
-Result<std::size_t> chooseCamera(const std::vector<ImportedCamera>& cameras, const std::string& nameOrNumber);
-
 } // namespace osgGpuAnimation::gltf

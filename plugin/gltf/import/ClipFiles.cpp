@@ -61,18 +61,11 @@ Result<std::string> readAsGltf(const std::string& path, const ImportOptions& opt
 /// The names of the objects that have such properties, by number.
 std::vector<std::string> objectNames(const tinygltf::Model& model, PropertyMember::Object object)
 {
-    switch (object)
-    {
-    case PropertyMember::Object::Material:
-        return namesIn(model.materials);
-    case PropertyMember::Object::Light:
-        return namesIn(model.lights);
-    case PropertyMember::Object::Camera:
-        return namesIn(model.cameras);
-    case PropertyMember::Object::Node:
-        return namesIn(model.nodes);
-    }
-    return {};
+    using Object = PropertyMember::Object;
+    return object == Object::Material ? namesIn(model.materials)
+           : object == Object::Light  ? namesIn(model.lights)
+           : object == Object::Camera ? namesIn(model.cameras)
+                                      : namesIn(model.nodes);
 }
 
 /// The pointer to the same property of the model's object of the same name. If there is none, a text that names no

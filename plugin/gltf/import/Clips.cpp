@@ -67,13 +67,6 @@ std::vector<ClipMarker> readMarkers(const tinygltf::Value& extras, double begin,
     return result;
 }
 
-std::size_t numbersIn(const tinygltf::Model& model, int input, int output)
-{
-    const tinygltf::Accessor& times = elementOf(model.accessors, input);
-    const tinygltf::Accessor& values = elementOf(model.accessors, output);
-    return times.count + values.count * componentCount(values);
-}
-
 /// Of keys with equal times the last one remains.
 void dropRepeatedKeys(Channel& channel)
 {
@@ -102,7 +95,36 @@ public:
     {
     }
 
-    std::optional<Clip> read(std::size_t index);
+    std::optional<Clip> read(std::size_t index)
+    {
+        const tinygltf::Animation& animation = _model.animations[index];
+        _clip = namedElement("animations", index, animation.name);
+        _channel.clear();
+        _channels.clear();
+        _channelBytes = 0;
+        if (animation.channels.empty()) return std::nullopt; // the document's check has said so
+        bool good = true;
+        for (std::size_t channel = 0; channel < animation.channels.size() && good; ++channel)
+            good = readChannel(animation, channel);
+        const double begin = good ? shiftToZero() : 0.0;
+        good = good && addChannels();
+        const std::size_t bytes = _builder.byteSize();
+        if (good && !_budget.take(bytes))
+            good = fail("its keyframes would take " + std::to_string(bytes) + " bytes, " + _budget.limitText());
+        if (!good)
+        {
+            _builder = ClipBuilder(_joints.skeleton, _morphs.weights);
+            return std::nullopt;
+        }
+        Clip clip = _builder.build(nameOf(animation, index));
+        if (!fits(_joints.skeleton, clip))
+        {
+            fail("it takes joints or weights " + outOfRangeText());
+            return std::nullopt;
+        }
+        Result<Clip> marked = clip.withMarkers(readMarkers(animation.extras, begin, _clip, _report));
+        return marked ? std::move(marked.value()) : std::move(clip);
+    }
 
 private:
     struct ReadChannel
@@ -112,15 +134,106 @@ private:
         Channel channel;
     };
 
-    void start(const tinygltf::Animation& animation, std::size_t index);
-    std::string nameOf(const tinygltf::Animation& animation, std::size_t index) const;
-    // These return false, with a warning, if the clip is at fault.
-    bool readChannel(const tinygltf::Animation& animation, std::size_t index);
-    bool addChannels();
-    bool fail(const std::string& why);
+    std::string nameOf(const tinygltf::Animation& animation, std::size_t index) const
+    {
+        if (animation.name.empty()) return "clip " + std::to_string(index);
+        if (_fileName.empty() || !isGenericClipName(animation.name)) return animation.name;
+        const auto isInTheWay = [&](const tinygltf::Animation& other)
+        { return &other != &animation && (isGenericClipName(other.name) || other.name == _fileName); };
+        const bool isAlone = std::none_of(_model.animations.begin(), _model.animations.end(), isInTheWay);
+        return isAlone ? _fileName : animation.name;
+    }
 
-    double shiftToZero();
-    bool mendTimes(int input, Channel& channel);
+    // These return false, with a warning, if the clip is at fault.
+
+    bool readChannel(const tinygltf::Animation& animation, std::size_t index)
+    {
+        const tinygltf::AnimationChannel& source = animation.channels[index];
+        _channel = "channels[" + std::to_string(index) + "]";
+        const std::optional<PropertyPointer> property = propertyOf(source);
+        if (source.target_node < 0 && !property) return true;
+        const auto node = static_cast<std::size_t>(source.target_node); // of no property
+        const tinygltf::AnimationSampler& sampler = elementOf(animation.samplers, source.sampler);
+        Channel channel;
+        channel.path = property ? Channel::Path::Weights : pathOf(source.target_path);
+        channel.target = property                                 ? _morphs.ofPointer.at(source.target_path)
+                         : channel.path == Channel::Path::Weights ? _morphs.ofNode[node]
+                                                                  : _joints.ofNode[node];
+        channel.weight = weightOf(source);
+        channel.interpolation = interpolationOf(sampler.interpolation);
+        if (channel.path != Channel::Path::Weights && _joints.isSheared[node])
+        {
+            _report.warn(_clip + "." + _channel + ": " + namedElement("nodes", node, _model.nodes[node].name) +
+                         " has a matrix that shears and cannot be animated; channel skipped");
+            return true;
+        }
+        const tinygltf::Accessor& output = elementOf(_model.accessors, sampler.output);
+        _channelBytes +=
+            (elementOf(_model.accessors, sampler.input).count + output.count * componentCount(output)) * sizeof(double);
+        if (_channelBytes > _budget.left()) return fail("its keys take too many bytes, " + _budget.limitText());
+        channel.times = readDoubles(_model, sampler.input);
+        channel.values = readDoubles(_model, sampler.output);
+        if (property && property->member->isBoolean)
+            for (double& value : channel.values)
+                value = value == 0.0 ? 0.0 : 1.0;
+        _channels.push_back({index, sampler.input, std::move(channel)});
+        return true;
+    }
+
+    bool addChannels()
+    {
+        bool any = _channels.empty(); // a clip without a target shows the rest pose
+        for (ReadChannel& read : _channels)
+        {
+            _channel = "channels[" + std::to_string(read.index) + "]";
+            if (!mendTimes(read.input, read.channel)) continue;
+            const Result<void> added = _builder.add(std::move(read.channel));
+            if (!added) return fail(added.error().message);
+            any = true;
+        }
+        _channel.clear();
+        return any || fail("no channel is left");
+    }
+
+    bool fail(const std::string& why)
+    {
+        _report.warn(_clip + (_channel.empty() ? "" : "." + _channel) + ": " + why + "; clip skipped");
+        return false;
+    }
+
+    /// Where the times begin before 0, the clip begins there. Returns that time.
+    double shiftToZero()
+    {
+        double begin = 0.0;
+        for (const ReadChannel& read : _channels) // but those that mendTimes() leaves out
+            if (std::is_sorted(read.channel.times.begin(), read.channel.times.end()))
+                begin = std::min(begin, read.channel.times.front());
+        if (begin == 0.0) return begin;
+        _report.warn(_clip + ": expected times from 0 on, found " + numberText(begin) + "; the clip begins there");
+        for (ReadChannel& read : _channels)
+            for (double& time : read.channel.times)
+                time = static_cast<double>(static_cast<float>(time - begin));
+        return begin;
+    }
+
+    /// False if a time is less than the one before it: its key may be misplaced or mistyped.
+    bool mendTimes(int input, Channel& channel)
+    {
+        const auto end = channel.times.end();
+        const auto equal = std::adjacent_find(channel.times.begin(), end, std::greater_equal<>());
+        if (equal == end) return true;
+        const auto less = std::is_sorted_until(equal, end);
+        const bool isSorted = less == end;
+        if (_faultyInputs.insert(input).second)
+            _report.warn(_clip + "." + _channel + ": " + elementName("accessors", input) +
+                         ": expected times that increase, found " +
+                         (isSorted
+                              ? numberText(*equal) + " twice; the last of such keys is used, here and in other channels"
+                              : numberText(*less) + " after " + numberText(*(less - 1)) +
+                                    "; this channel and others with these times are skipped"));
+        if (isSorted) dropRepeatedKeys(channel);
+        return isSorted;
+    }
 
     const tinygltf::Model& _model;
     const Joints& _joints;
@@ -136,138 +249,6 @@ private:
     std::size_t _channelBytes =
         0; ///< of the keys read for this clip; freed with the channels, so only compared with the budget
 };
-
-bool ClipReader::fail(const std::string& why)
-{
-    _report.warn(_clip + (_channel.empty() ? "" : "." + _channel) + ": " + why + "; clip skipped");
-    return false;
-}
-
-void ClipReader::start(const tinygltf::Animation& animation, std::size_t index)
-{
-    _clip = namedElement("animations", index, animation.name);
-    _channel.clear();
-    _channels.clear();
-    _channelBytes = 0;
-}
-
-bool ClipReader::readChannel(const tinygltf::Animation& animation, std::size_t index)
-{
-    const tinygltf::AnimationChannel& source = animation.channels[index];
-    _channel = "channels[" + std::to_string(index) + "]";
-    const std::optional<PropertyPointer> property = propertyOf(source);
-    if (source.target_node < 0 && !property) return true;
-    const auto node = static_cast<std::size_t>(source.target_node); // of no property
-    const tinygltf::AnimationSampler& sampler = elementOf(animation.samplers, source.sampler);
-    Channel channel;
-    channel.path = property ? Channel::Path::Weights : pathOf(source.target_path);
-    channel.target = property                                 ? _morphs.ofPointer.at(source.target_path)
-                     : channel.path == Channel::Path::Weights ? _morphs.ofNode[node]
-                                                              : _joints.ofNode[node];
-    channel.weight = weightOf(source);
-    channel.interpolation = interpolationOf(sampler.interpolation);
-    if (channel.path != Channel::Path::Weights && _joints.isSheared[node])
-    {
-        _report.warn(_clip + "." + _channel + ": " + namedElement("nodes", node, _model.nodes[node].name) +
-                     " has a matrix that shears and cannot be animated; channel skipped");
-        return true;
-    }
-    _channelBytes += numbersIn(_model, sampler.input, sampler.output) * sizeof(double);
-    if (_channelBytes > _budget.left()) return fail("its keys take too many bytes, " + _budget.limitText());
-    channel.times = readDoubles(_model, sampler.input);
-    channel.values = readDoubles(_model, sampler.output);
-    if (property && property->member->isBoolean)
-        for (double& value : channel.values)
-            value = value == 0.0 ? 0.0 : 1.0;
-    _channels.push_back({index, sampler.input, std::move(channel)});
-    return true;
-}
-
-/// Where the times begin before 0, the clip begins there. Returns that time.
-double ClipReader::shiftToZero()
-{
-    double begin = 0.0;
-    for (const ReadChannel& read : _channels) // but those that mendTimes() leaves out
-        if (std::is_sorted(read.channel.times.begin(), read.channel.times.end()))
-            begin = std::min(begin, read.channel.times.front());
-    if (begin == 0.0) return begin;
-    _report.warn(_clip + ": expected times from 0 on, found " + numberText(begin) + "; the clip begins there");
-    for (ReadChannel& read : _channels)
-        for (double& time : read.channel.times)
-            time = static_cast<double>(static_cast<float>(time - begin));
-    return begin;
-}
-
-/// False if a time is less than the one before it: its key may be misplaced or mistyped.
-bool ClipReader::mendTimes(int input, Channel& channel)
-{
-    const auto end = channel.times.end();
-    const auto equal = std::adjacent_find(channel.times.begin(), end, std::greater_equal<>());
-    if (equal == end) return true;
-    const auto less = std::is_sorted_until(equal, end);
-    const bool isSorted = less == end;
-    if (_faultyInputs.insert(input).second)
-        _report.warn(
-            _clip + "." + _channel + ": " + elementName("accessors", input) + ": expected times that increase, found " +
-            (isSorted ? numberText(*equal) + " twice; the last of such keys is used, here and in other channels"
-                      : numberText(*less) + " after " + numberText(*(less - 1)) +
-                            "; this channel and others with these times are skipped"));
-    if (isSorted) dropRepeatedKeys(channel);
-    return isSorted;
-}
-
-bool ClipReader::addChannels()
-{
-    bool any = _channels.empty(); // a clip without a target shows the rest pose
-    for (ReadChannel& read : _channels)
-    {
-        _channel = "channels[" + std::to_string(read.index) + "]";
-        if (!mendTimes(read.input, read.channel)) continue;
-        const Result<void> added = _builder.add(std::move(read.channel));
-        if (!added) return fail(added.error().message);
-        any = true;
-    }
-    _channel.clear();
-    return any || fail("no channel is left");
-}
-
-std::string ClipReader::nameOf(const tinygltf::Animation& animation, std::size_t index) const
-{
-    if (animation.name.empty()) return "clip " + std::to_string(index);
-    if (_fileName.empty() || !isGenericClipName(animation.name)) return animation.name;
-    const auto isInTheWay = [&](const tinygltf::Animation& other)
-    { return &other != &animation && (isGenericClipName(other.name) || other.name == _fileName); };
-    const bool isAlone = std::none_of(_model.animations.begin(), _model.animations.end(), isInTheWay);
-    return isAlone ? _fileName : animation.name;
-}
-
-std::optional<Clip> ClipReader::read(std::size_t index)
-{
-    const tinygltf::Animation& animation = _model.animations[index];
-    start(animation, index);
-    if (animation.channels.empty()) return std::nullopt; // the document's check has said so
-    bool good = true;
-    for (std::size_t channel = 0; channel < animation.channels.size() && good; ++channel)
-        good = readChannel(animation, channel);
-    const double begin = good ? shiftToZero() : 0.0;
-    good = good && addChannels();
-    const std::size_t bytes = _builder.byteSize();
-    if (good && !_budget.take(bytes))
-        good = fail("its keyframes would take " + std::to_string(bytes) + " bytes, " + _budget.limitText());
-    if (!good)
-    {
-        _builder = ClipBuilder(_joints.skeleton, _morphs.weights);
-        return std::nullopt;
-    }
-    Clip clip = _builder.build(nameOf(animation, index));
-    if (!fits(_joints.skeleton, clip))
-    {
-        fail("it takes joints or weights " + outOfRangeText());
-        return std::nullopt;
-    }
-    Result<Clip> marked = clip.withMarkers(readMarkers(animation.extras, begin, _clip, _report));
-    return marked ? std::move(marked.value()) : std::move(clip);
-}
 
 } // namespace
 

@@ -113,8 +113,8 @@ std::vector<AffineMatrix> readInverseBinds(const tinygltf::Model& model, const t
 
 int lightOf(const tinygltf::Node& node)
 {
-    const auto extension = node.extensions.find("KHR_lights_punctual");
-    return extension == node.extensions.end() ? -1 : extension->second.Get("light").GetNumberAsInt();
+    const tinygltf::Value& extension = extensionOf(node.extensions, "KHR_lights_punctual");
+    return extension.Has("light") ? extension.Get("light").GetNumberAsInt() : -1;
 }
 
 void addNodesOfProperties(const tinygltf::Model& model, const NodeTree& tree, std::vector<bool>& nodes)
@@ -127,7 +127,8 @@ void addNodesOfProperties(const tinygltf::Model& model, const NodeTree& tree, st
     const auto isPrimitive = [&](const tinygltf::Primitive& primitive)
     {
         bool isAnimated = isIn(materials, primitive.material);
-        forEachVariantMaterial(primitive, [&](int material) { isAnimated = isAnimated || isIn(materials, material); });
+        forEachVariantMaterial(primitive, [&](int material, const tinygltf::Value&)
+                               { isAnimated = isAnimated || isIn(materials, material); });
         return isAnimated;
     };
     std::vector<bool> meshes;
@@ -146,7 +147,7 @@ void addNodesOfProperties(const tinygltf::Model& model, const NodeTree& tree, st
 void addStillNodes(const tinygltf::Model& model, const NodeTree& tree, std::vector<bool>& nodes)
 {
     const std::vector<bool> moved = driven(model, nodes, true);
-    if (std::find(moved.begin(), moved.end(), true) == moved.end()) return;
+    if (!contains(moved, true)) return;
     for (std::size_t index = 0; index < model.nodes.size(); ++index)
     {
         const tinygltf::Mesh* mesh = meshOf(model, model.nodes[index]);
@@ -178,8 +179,7 @@ std::vector<int> rigidJoints(const tinygltf::Model& model, const NodeTree& tree,
         if (mesh && std::any_of(mesh->primitives.begin(), mesh->primitives.end(), isRigid))
             result.push_back(joints.ofNode[node]);
     }
-    const bool isNew = std::find(result.begin(), result.end(), joints.ofStillMeshes) == result.end();
-    if (joints.ofStillMeshes >= 0 && isNew) result.push_back(joints.ofStillMeshes);
+    if (joints.ofStillMeshes >= 0 && !contains(result, joints.ofStillMeshes)) result.push_back(joints.ofStillMeshes);
     return result;
 }
 

@@ -7,9 +7,8 @@
 #include <osg/Math>
 
 #include <algorithm>
+#include <numeric>
 #include <string>
-#include <utility>
-
 namespace osgGpuAnimation::gltf
 {
 
@@ -30,16 +29,13 @@ Result<osg::ref_ptr<PunctualLight>> makeLight(const tinygltf::Light& light, unsi
 {
     osg::ref_ptr<PunctualLight> made = new PunctualLight(kindOf(light), number);
     const osg::Vec3 color(osg::Vec3d(light.color[0], light.color[1], light.color[2]));
-    const Result<void> set = made->setIntensity(color, static_cast<float>(light.intensity));
-    if (!set) return set.error();
-    const Result<void> ends = made->setRange(static_cast<float>(light.range));
-    if (!ends) return ends.error();
-    if (light.type != "spot") return made;
+    Result<void> set = made->setIntensity(color, static_cast<float>(light.intensity));
+    if (set) set = made->setRange(static_cast<float>(light.range));
     // Rounded to floats, pi / 2 is more than 90 degrees, and two angles may be equal.
     const float outer = std::min(90.0f, static_cast<float>(osg::RadiansToDegrees(light.spot.outerConeAngle)));
     const float inner = static_cast<float>(osg::RadiansToDegrees(light.spot.innerConeAngle));
-    const Result<void> cone = made->setCone(std::min(inner, outer * 0.9999f), outer);
-    if (!cone) return cone.error();
+    if (set && light.type == "spot") set = made->setCone(std::min(inner, outer * 0.9999f), outer);
+    if (!set) return set.error();
     return made;
 }
 
@@ -55,32 +51,26 @@ osg::ref_ptr<osg::LightSource> makeSource(const tinygltf::Model& model, const Im
     return source;
 }
 
-double distanceOf(const tinygltf::Model& model, const NodeTree& tree, const ImportedLight& light,
-                  const osg::Vec3d& middle)
-{
-    if (kindOf(elementOf(model.lights, light.light)) == PunctualLight::Kind::Directional) return -1.0;
-    const glm::dvec4& place = elementOf(tree.toWorld, light.node)[3];
-    return (osg::Vec3d(place.x, place.y, place.z) - middle).length();
-}
-
 /// The indices of the lights that remain, in their order.
 std::vector<std::size_t> nearest(const tinygltf::Model& model, const NodeTree& tree, const osg::Vec3d& middle,
                                  const std::vector<ImportedLight>& lights, Report& report)
 {
-    std::vector<std::pair<double, std::size_t>> byDistance;
-    for (std::size_t i = 0; i < lights.size(); ++i)
-        byDistance.emplace_back(distanceOf(model, tree, lights[i], middle), i);
-    if (lights.size() > maxLights)
+    std::vector<std::size_t> kept(lights.size());
+    std::iota(kept.begin(), kept.end(), std::size_t(0));
+    if (lights.size() <= maxLights) return kept;
+    std::vector<double> distances;
+    for (const ImportedLight& light : lights)
     {
-        std::sort(byDistance.begin(), byDistance.end());
-        byDistance.resize(maxLights);
-        report.warn("nodes: the scene has " + std::to_string(lights.size()) + " lights, OpenGL has " +
-                    std::to_string(maxLights) + " beside the viewer's; the nearest to its middle are shown");
+        const glm::dvec4& place = elementOf(tree.toWorld, light.node)[3];
+        const bool isEverywhere = kindOf(elementOf(model.lights, light.light)) == PunctualLight::Kind::Directional;
+        distances.push_back(isEverywhere ? -1.0 : (osg::Vec3d(place.x, place.y, place.z) - middle).length());
     }
-    std::vector<std::size_t> kept;
-    for (const auto& [distance, index] : byDistance)
-        kept.push_back(index);
+    std::stable_sort(kept.begin(), kept.end(),
+                     [&](std::size_t a, std::size_t b) { return distances[a] < distances[b]; });
+    kept.resize(maxLights);
     std::sort(kept.begin(), kept.end());
+    report.warn("nodes: the scene has " + std::to_string(lights.size()) + " lights, OpenGL has " +
+                std::to_string(maxLights) + " beside the viewer's; the nearest to its middle are shown");
     return kept;
 }
 

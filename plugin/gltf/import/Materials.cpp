@@ -114,16 +114,6 @@ osg::Vec4 Materials::plainColor(const osg::Vec4& color, int material) const
     return displayColor(componentMultiply(linearColor(color), baseColor(material)));
 }
 
-bool Materials::hasNormalMap(int material)
-{
-    return _maps.of(material).hasNormalMap();
-}
-
-unsigned int Materials::wantedCoordinates(int material)
-{
-    return (1u << _maps.of(material).coordinates.size()) - 1u;
-}
-
 void Materials::warnOfMaps(int material, const MaterialMaps& maps)
 {
     if (!_warned.insert(material).second) return;

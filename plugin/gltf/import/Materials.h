@@ -66,9 +66,9 @@ public:
     /// The colour array's element of a plain geometry, which the fixed pipeline uses in place of the material's colour.
     /// color: of the vertex, as displayed.
     osg::Vec4 plainColor(const osg::Vec4& color, int material) const;
-    bool hasNormalMap(int material);
+    bool hasNormalMap(int material) { return _maps.of(material).hasNormalMap(); }
     /// The coordinates that the material's maps read, as bits by their numbers.
-    unsigned int wantedCoordinates(int material);
+    unsigned int wantedCoordinates(int material) { return (1u << _maps.of(material).coordinates.size()) - 1u; }
 
 private:
     osg::ref_ptr<osg::StateSet> make(const MaterialUse& use);

@@ -63,16 +63,11 @@ osg::ref_ptr<osg::PrimitiveSet> makePrimitiveSet(int mode, const std::vector<std
                                 : makeElements<osg::DrawElementsUInt>(glMode, indices);
 }
 
-const tinygltf::Accessor& accessorOf(const tinygltf::Model& model, int accessor)
-{
-    return elementOf(model.accessors, accessor);
-}
-
 /// Zero without POSITION.
 std::size_t vertexCountOf(const tinygltf::Model& model, const tinygltf::Primitive& primitive)
 {
     const auto positions = primitive.attributes.find("POSITION");
-    return positions == primitive.attributes.end() ? 0 : accessorOf(model, positions->second).count;
+    return positions == primitive.attributes.end() ? 0 : elementOf(model.accessors, positions->second).count;
 }
 
 /// The indices or vertices of whole points, lines or triangles.
@@ -80,7 +75,7 @@ std::size_t drawnCount(const tinygltf::Model& model, const tinygltf::Primitive& 
 {
     const std::size_t vertices = vertexCountOf(model, primitive);
     if (vertices == 0 || primitive.indices < 0) return wholeCount(primitive.mode, vertices);
-    return wholeCount(primitive.mode, accessorOf(model, primitive.indices).count);
+    return wholeCount(primitive.mode, elementOf(model.accessors, primitive.indices).count);
 }
 
 /// Appends the indices of whole points, lines or triangles; 0, 1, 2, … where the primitive has none.
@@ -150,11 +145,6 @@ void visitArrays(MeshPrimitive& mesh, const Visitor& visit)
     }
 }
 
-void pickVertices(MeshPrimitive& mesh)
-{
-    visitArrays(mesh, [&](auto& array) { pick(array, mesh.sourceVertex); });
-}
-
 /// Welds vertices whose attributes are all equal: those that the mesh has read and the file's influences.
 WeldedVertices weld(const tinygltf::Model& model, const tinygltf::Primitive& primitive, MeshPrimitive& mesh)
 {
@@ -164,14 +154,11 @@ WeldedVertices weld(const tinygltf::Model& model, const tinygltf::Primitive& pri
                 {
                     if (array) streams.push_back({array->getDataPointer(), array->getElementSize()});
                 });
-    std::vector<std::vector<std::uint32_t>> joints;
-    std::vector<std::vector<float>> weights;
-    for (std::size_t set = 0; set < influenceSetCount(primitive); ++set)
+    const std::vector<FileInfluences> influences = readFileInfluences(model, primitive);
+    for (const FileInfluences& set : influences)
     {
-        joints.push_back(readIntegers(model, primitive.attributes.at("JOINTS_" + std::to_string(set))));
-        weights.push_back(readFloats(model, primitive.attributes.at("WEIGHTS_" + std::to_string(set))));
-        streams.push_back({joints.back().data(), 4 * sizeof(std::uint32_t)});
-        streams.push_back({weights.back().data(), 4 * sizeof(float)});
+        streams.push_back({set.joints.data(), 4 * sizeof(std::uint32_t)});
+        streams.push_back({set.weights.data(), 4 * sizeof(float)});
     }
     return weldVertices(streams, mesh.vertexCount);
 }
@@ -199,7 +186,7 @@ void makeSmooth(MeshPrimitive& mesh, const tinygltf::Model& model, const tinyglt
     for (std::size_t vertex = mesh.vertexCount; vertex-- > 0;)
         mesh.sourceVertex[welded.vertexOf[vertex]] = static_cast<std::uint32_t>(vertex);
     mesh.geometryVertex = std::make_shared<std::vector<std::uint32_t>>(std::move(welded.vertexOf));
-    pickVertices(mesh);
+    visitArrays(mesh, [&](auto& array) { pick(array, mesh.sourceVertex); });
     if (!isBlended) optimizeForVertexCache(corners, welded.count);
     mesh.primitiveSet = makePrimitiveSet(modeTriangles, corners, welded.count);
     mesh.normals = smoothNormals(*mesh.positions, corners);
@@ -218,7 +205,7 @@ void makeFlat(MeshPrimitive& mesh, int mode, std::vector<std::uint32_t> indices)
     {
         mesh.sourceVertex = std::move(corners);
         mesh.geometryVertex = std::make_shared<std::vector<std::uint32_t>>(invert(mesh.sourceVertex, mesh.vertexCount));
-        pickVertices(mesh);
+        visitArrays(mesh, [&](auto& array) { pick(array, mesh.sourceVertex); });
     }
     mesh.normals = flatNormals(*mesh.positions);
     mesh.isFlat = true;
@@ -241,7 +228,7 @@ std::size_t bytesAVertex(const tinygltf::Primitive& primitive)
 std::size_t bytesOfIndices(const tinygltf::Model& model, const tinygltf::Primitive& primitive, bool hasIndices)
 {
     const std::size_t count =
-        primitive.indices < 0 ? vertexCountOf(model, primitive) : accessorOf(model, primitive.indices).count;
+        primitive.indices < 0 ? vertexCountOf(model, primitive) : elementOf(model.accessors, primitive.indices).count;
     const std::size_t corners = !isFlat(primitive) ? 0 : (primitive.mode == modeTriangles ? 1 : 3) * count;
     return corners * bytesAVertex(primitive) + (hasIndices ? 3 * sizeof(std::uint32_t) * count : 0);
 }
@@ -252,11 +239,6 @@ std::string labelOf(const tinygltf::Mesh& mesh, int meshIndex, int primitive)
 }
 
 } // namespace
-
-Meshes::Meshes(const tinygltf::Model& model, MapsOfMaterials& maps, MemoryBudget& budget, Report& report)
-    : _model(model), _maps(maps), _budget(budget), _report(report)
-{
-}
 
 const MeshPrimitive* Meshes::primitive(int mesh, int primitive, bool skinned)
 {

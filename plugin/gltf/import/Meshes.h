@@ -61,8 +61,10 @@ class Meshes
 {
 public:
     /// Reads the texture coordinates that the maps need, and tangents for normal maps.
-    Meshes(const tinygltf::Model& model, MapsOfMaterials& maps, MemoryBudget& budget, Report& report);
-
+    Meshes(const tinygltf::Model& model, MapsOfMaterials& maps, MemoryBudget& budget, Report& report)
+        : _model(model), _maps(maps), _budget(budget), _report(report)
+    {
+    }
     /// The primitives of a mesh, ascending, without those that are drawn together with an earlier one.
     const std::vector<int>& firstPrimitives(int mesh) { return groupsOf(mesh).firsts; }
     /// One of firstPrimitives(), and those drawn together with it. skinned: by a skin, which makes vertices expensive:

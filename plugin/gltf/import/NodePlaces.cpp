@@ -10,21 +10,8 @@
 
 #include <osg/MatrixTransform>
 
-#include <utility>
-
 namespace osgGpuAnimation::gltf
 {
-
-NodePlaces::NodePlaces(const tinygltf::Model& model, const NodeTree& tree, const Joints& joints,
-                       AnimatedCharacter* character, std::vector<osg::ref_ptr<osg::Group>> transforms)
-    : _model(model), _tree(tree), _joints(joints), _character(character), _places(std::move(transforms))
-{
-}
-
-void NodePlaces::add(std::size_t node, osg::Node* child)
-{
-    placeOf(node).addChild(child);
-}
 
 osg::Group& NodePlaces::placeOf(std::size_t node)
 {

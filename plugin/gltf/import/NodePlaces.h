@@ -9,8 +9,8 @@
 #include <tiny_gltf.h>
 
 #include <cstddef>
+#include <utility>
 #include <vector>
-
 namespace osgGpuAnimation
 {
 class AnimatedCharacter;
@@ -28,10 +28,12 @@ public:
     /// transforms: see buildSceneGraph(); it has those of the nodes that do not move and are asked for. character: null
     /// if no node moves.
     NodePlaces(const tinygltf::Model& model, const NodeTree& tree, const Joints& joints, AnimatedCharacter* character,
-               std::vector<osg::ref_ptr<osg::Group>> transforms);
-
+               std::vector<osg::ref_ptr<osg::Group>> transforms)
+        : _model(model), _tree(tree), _joints(joints), _character(character), _places(std::move(transforms))
+    {
+    }
     /// Adds a child to the node's place. node: in the drawn part.
-    void add(std::size_t node, osg::Node* child);
+    void add(std::size_t node, osg::Node* child) { placeOf(node).addChild(child); }
 
 private:
     osg::Group& placeOf(std::size_t node);

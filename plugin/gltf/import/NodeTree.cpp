@@ -2,6 +2,7 @@
 #include "gltf/import/NodeTree.h"
 
 #include "gltf/data/AnimationPointers.h"
+#include "gltf/data/TextureCoordinates.h"
 #include "gltf/data/ValidateLods.h"
 #include "gltf/file/Elements.h"
 #include "gltf/import/NodeTransform.h"
@@ -94,9 +95,8 @@ Result<int> chooseScene(const tinygltf::Model& model, const ImportOptions& optio
 /// The node's own part of KHR_node_visibility.
 bool isVisible(const tinygltf::Node& node)
 {
-    const auto extension = node.extensions.find("KHR_node_visibility");
-    return extension == node.extensions.end() || !extension->second.Has("visible") ||
-           extension->second.Get("visible").Get<bool>();
+    const tinygltf::Value& extension = extensionOf(node.extensions, "KHR_node_visibility");
+    return !extension.Has("visible") || extension.Get("visible").Get<bool>();
 }
 
 } // namespace

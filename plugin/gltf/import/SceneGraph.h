@@ -2,6 +2,7 @@
 #pragma once
 
 #include <osg/Geometry>
+#include <osg/Group>
 #include <osg/Matrixd>
 #include <tiny_gltf.h>
 
@@ -9,11 +10,6 @@
 #include <cstdint>
 #include <memory>
 #include <vector>
-
-namespace osg
-{
-class Group;
-}
 
 namespace osgGpuAnimation
 {

@@ -9,13 +9,9 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstdint>
-#include <exception>
 #include <future>
-#include <new>
 #include <system_error>
 #include <thread>
-#include <utility>
 #include <vector>
 
 namespace osgGpuAnimation::gltf
@@ -25,7 +21,7 @@ namespace
 {
 
 /// The pictures of the maps that are shown, each once. Base colours first: they show the most. Pictures without bytes
-/// are ignored: LoadImages has warned of them.
+/// are ignored: loadDocument() has warned of them.
 std::vector<int> wantedImages(const tinygltf::Model& model, bool allMaps)
 {
     std::vector<MaterialMaps> materials;
@@ -44,43 +40,6 @@ std::vector<int> wantedImages(const tinygltf::Model& model, bool allMaps)
                 if (!elementOf(model.images, image).image.empty()) wanted.push_back(image);
             }
     return wanted;
-}
-
-bool isGrey(const osg::Image& image)
-{
-    return image.getPixelFormat() == GL_LUMINANCE || image.getPixelFormat() == GL_LUMINANCE_ALPHA;
-}
-
-template <typename Channel>
-void copyGreyToRgb(const osg::Image& grey, osg::Image& rgb)
-{
-    const bool hasAlpha = grey.getPixelFormat() == GL_LUMINANCE_ALPHA;
-    for (int y = 0; y < grey.t(); ++y)
-    {
-        auto from = reinterpret_cast<const Channel*>(grey.data(0, static_cast<unsigned int>(y)));
-        auto to = reinterpret_cast<Channel*>(rgb.data(0, static_cast<unsigned int>(y)));
-        for (int x = 0; x < grey.s(); ++x)
-        {
-            to = std::fill_n(to, 3, *from++);
-            if (hasAlpha) *to++ = *from++;
-        }
-    }
-}
-
-/// A copy of a grey picture as RGB or RGBA.
-osg::ref_ptr<osg::Image> greyToRgb(const osg::Image& grey)
-{
-    osg::ref_ptr<osg::Image> rgb = new osg::Image;
-    const GLenum format = grey.getPixelFormat() == GL_LUMINANCE_ALPHA ? GL_RGBA : GL_RGB;
-    rgb->allocateImage(grey.s(), grey.t(), 1, format, grey.getDataType());
-    if (!rgb->data()) throw std::bad_alloc();
-    rgb->setInternalTextureFormat(static_cast<GLint>(format));
-    rgb->setName(grey.getName());
-    if (grey.getDataType() == GL_UNSIGNED_SHORT)
-        copyGreyToRgb<std::uint16_t>(grey, *rgb);
-    else
-        copyGreyToRgb<std::uint8_t>(grey, *rgb);
-    return rgb;
 }
 
 /// The texture format for an RGB or RGBA picture; GL has no sRGB format of 16 bits a channel.
@@ -104,8 +63,8 @@ public:
     {
         for (const int index : wantedImages(model, allMaps))
         {
-            _tasks.emplace_back(&elementOf(model.images, index).image, std::promise<Decoded>());
-            _decoded.emplace(index, _tasks.back().second.get_future());
+            _tasks.emplace_back([&bytes = elementOf(model.images, index).image] { return decodePicture(bytes); });
+            _decoded.emplace(index, _tasks.back().get_future());
         }
         const std::size_t threads = std::min(
             {_tasks.size(), maxThreads, static_cast<std::size_t>(std::max(1u, std::thread::hardware_concurrency()))});
@@ -138,20 +97,10 @@ private:
     void run()
     {
         for (std::size_t task = _next++; task < _tasks.size() && !_stop; task = _next++)
-        {
-            auto& [bytes, promise] = _tasks[task];
-            try
-            {
-                promise.set_value(decodePicture(*bytes));
-            }
-            catch (...)
-            {
-                promise.set_exception(std::current_exception()); // out of memory: take() throws it again
-            }
-        }
+            _tasks[task](); // out of memory: take() throws it
     }
 
-    std::vector<std::pair<const std::vector<unsigned char>*, std::promise<Decoded>>> _tasks;
+    std::vector<std::packaged_task<Decoded()>> _tasks;
     std::map<int, std::future<Decoded>> _decoded;
     std::atomic<std::size_t> _next{0}; ///< the first task that no thread has begun
     std::atomic<bool> _stop{false};
@@ -193,20 +142,9 @@ osg::Image* Textures::image(int index)
     return place->second.get();
 }
 
-osg::Image* Textures::imageWithoutGrey(int index)
-{
-    osg::Image* const picture = image(index);
-    if (!picture || !isGrey(*picture)) return picture;
-    osg::ref_ptr<osg::Image>& rgb = _imagesWithoutGrey[index];
-    if (rgb) return rgb;
-    rgb = greyToRgb(*picture);
-    if (_keepsEncoded) keepEncoded(*rgb, elementOf(_model.images, index).image);
-    return rgb;
-}
-
 osg::ref_ptr<osg::Texture2D> Textures::make(const tinygltf::Texture& source, ColorSpace space)
 {
-    osg::Image* picture = space == ColorSpace::Display ? image(source.source) : imageWithoutGrey(source.source);
+    osg::Image* const picture = image(source.source);
     if (!picture) return nullptr;
     const tinygltf::Sampler sampler =
         source.sampler < 0 ? tinygltf::Sampler() : elementOf(_model.samplers, source.sampler);

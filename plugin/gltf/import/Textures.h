@@ -22,9 +22,7 @@ enum class ColorSpace
 };
 
 /// One osg::Texture2D for each picture, sampler and colour space in use, with the sampler's filters and wrapping (glTF
-/// 2.0, section 3.8): textures of the file that agree in them share it. Those of one picture share the osg::Image. For
-/// Srgb and Linear, grey pictures become RGB, because GL's core profile has no grey formats: they share a second
-/// osg::Image.
+/// 2.0, section 3.8): textures of the file that agree in them share it. Those of one picture share the osg::Image.
 ///
 /// Up to four threads decode the pictures of all materials while the import reads clips and meshes, because decoding
 /// takes a large part of the load. Base colours come first.
@@ -44,7 +42,6 @@ private:
     class Decoding;
 
     osg::Image* image(int index);
-    osg::Image* imageWithoutGrey(int index);
     osg::ref_ptr<osg::Texture2D> make(const tinygltf::Texture& source, ColorSpace space);
 
     const tinygltf::Model& _model;
@@ -53,8 +50,7 @@ private:
     std::unique_ptr<Decoding> _decoding;
     /// By picture, sampler and colour space.
     std::map<std::tuple<int, int, ColorSpace>, osg::ref_ptr<osg::Texture2D>> _textures;
-    std::map<int, osg::ref_ptr<osg::Image>> _images;            ///< the requested ones; null if damaged
-    std::map<int, osg::ref_ptr<osg::Image>> _imagesWithoutGrey; ///< the grey ones of _images, as RGB or RGBA
+    std::map<int, osg::ref_ptr<osg::Image>> _images; ///< the requested ones; null if damaged
 };
 
 } // namespace osgGpuAnimation::gltf

@@ -4,10 +4,8 @@
 #include <osg/Vec3d>
 
 #include <algorithm>
-#include <cassert>
 #include <cstring>
 #include <numeric>
-#include <utility>
 
 namespace osgGpuAnimation::gltf
 {

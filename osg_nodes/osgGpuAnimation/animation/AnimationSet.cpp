@@ -115,7 +115,7 @@ AnimationSet::AnimationSet(AnimationParts parts, std::shared_ptr<MaskTable> mask
 {
     _restPose = osgGpuAnimation::restPose(_parts.skeleton, _parts.morphs);
     _firstTracksOfMorphs = firstTracksOfMorphs(_parts.skeleton, _parts.morphs);
-    _layout = layOutPalette(_parts.skeleton, _parts.skins, _parts.rigidJoints, _parts.morphs, _parts.garments);
+    _layout = layOutPalette(_parts);
     for (const Clip& clip : _parts.clips)
     {
         _firstKeyframes.push_back(_keyframeCount);
@@ -157,12 +157,7 @@ namespace
 bool areEqual(const std::vector<Skin>& garments, const std::vector<Skin>& others)
 {
     const auto isEqual = [](const Skin& garment, const Skin& other)
-    {
-        return garment.joints == other.joints &&
-               std::equal(garment.inverseBinds.begin(), garment.inverseBinds.end(), other.inverseBinds.begin(),
-                          other.inverseBinds.end(),
-                          [](const AffineMatrix& one, const AffineMatrix& two) { return one.rows == two.rows; });
-    };
+    { return garment.joints == other.joints && garment.inverseBinds == other.inverseBinds; };
     return std::equal(garments.begin(), garments.end(), others.begin(), others.end(), isEqual);
 }
 
@@ -186,20 +181,16 @@ Result<std::shared_ptr<const AnimationSet>> AnimationSet::withGarments(std::vect
     return made;
 }
 
-Result<std::shared_ptr<const AnimationSet>> AnimationSet::make(AnimationParts parts, std::shared_ptr<MaskTable> masks)
-{
-    return make(std::move(parts), std::move(masks), std::make_shared<Family>());
-}
-
 /// Adds the set to the family. The caller has locked a family that others know.
 Result<std::shared_ptr<const AnimationSet>> AnimationSet::make(AnimationParts parts, std::shared_ptr<MaskTable> masks,
-                                                               const std::shared_ptr<Family>& family)
+                                                               std::shared_ptr<Family> family)
 {
     const std::size_t trackCount = firstTracksOfMorphs(parts.skeleton, parts.morphs).back();
     if (auto fault = findFault(parts, trackCount)) return *fault;
     if (auto fault = findFaultInSize(parts.clips)) return *fault;
     Result<std::vector<ConstraintChain>> chains = chainsOf(parts);
     if (!chains) return chains.error();
+    if (!family) family = std::make_shared<Family>();
     const std::shared_ptr<const AnimationSet> set(
         new AnimationSet(std::move(parts), std::move(masks), family,
                          std::make_shared<const std::vector<ConstraintChain>>(std::move(chains).value())));

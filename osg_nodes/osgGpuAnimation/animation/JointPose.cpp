@@ -299,7 +299,7 @@ void JointPose::growExtent(std::size_t firstJoint, std::size_t endJoint)
             continue;
         const std::uint32_t numbers = _keyframe->setNumbers(joint);
         if (numbers == 0) continue;
-        if (!grown) longest = longestJoint(*_set);
+        if (!grown) longest = longestJoint(_set->skeleton());
         if (!grown) grown = std::make_shared<PoseExtent>(*_extent);
         grown->joints.resize(_set->skeleton().jointCount());
         PoseExtent::Joint& known = grown->joints[joint];

@@ -76,7 +76,7 @@ std::vector<std::string> atRest(const AnimationSet& set, const RigMatch& match)
 /// The names of those that clips of the other set move and that are nobody's counterpart.
 std::vector<std::string> leftOut(const AnimationSet& other, const RigMatch& match)
 {
-    const std::vector<bool> isMoved = JointMoves::inAnyOf(other.skeleton(), other.clips());
+    const std::vector<bool> isMoved = movedJoints(other.skeleton(), other.clips());
     const std::vector<bool> isUsed = usedOf(isMoved.size(), match.jointCounterparts());
     const std::vector<bool> isMorphUsed = usedOf(other.morphs().size(), match.morphCounterparts());
     std::vector<std::string> names;

@@ -289,7 +289,7 @@ std::vector<bool> nodesMovedBy(const std::vector<ClipFile>& files, const ClipJoi
     for (const ClipFile& file : files)
     {
         const Skeleton& skeleton = file.set->skeleton();
-        const std::vector<bool> isMoved = JointMoves::inAnyOf(skeleton, file.set->clips());
+        const std::vector<bool> isMoved = movedJoints(skeleton, file.set->clips());
         for (std::size_t joint = 0; joint < isMoved.size(); ++joint)
             if (isMoved[joint]) moved.insert(caselessJointName(skeleton.joint(joint).name));
         const std::vector<int> ofRole = RigNames::counterparts(namesIn(model.nodes), namesIn(skeleton.joints()));

@@ -18,16 +18,9 @@ namespace osgGpuAnimation
 namespace
 {
 
-constexpr JointTransform zeros{glm::vec4(0.0f), glm::vec4(0.0f), glm::vec4(0.0f)};
-
 bool isFinite(const glm::dmat3& m)
 {
     return std::isfinite(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]));
-}
-
-glm::vec4 numbersOf(const glm::dquat& q)
-{
-    return glm::vec4(Rotation::numbers(q));
 }
 
 /// xyz, with the w that is there.
@@ -36,50 +29,26 @@ void write(const glm::dvec3& value, glm::vec4& place)
     place = glm::vec4(glm::vec3(value), place.w);
 }
 
-/// True if a part differs from the rest transform's in any keyframe, or has a tangent.
-template <typename AreAlike>
-bool moves(const Clip& clip, std::size_t joint, const JointTransform& rest, AreAlike areAlike)
-{
-    for (std::size_t k = 0; k < clip.keyframeCount(); ++k)
-        for (std::size_t part = 0; part < clip.transformsPerTrack(); ++part)
-            if (!areAlike(clip.at(k, joint)[part], part == 0 ? rest : zeros)) return true;
-    return false;
-}
-
 } // namespace
 
-std::vector<JointMoves> JointMoves::of(const Skeleton& skeleton, const Clip& clip)
+std::vector<bool> movedJoints(const Skeleton& skeleton, const std::vector<Clip>& clips)
 {
-    const auto isNear = [](glm::vec4 JointTransform::*part, double max) {
-        return [=](const JointTransform& a, const JointTransform& b)
-        { return RestPose::areAlike(a.*part, b.*part, max); };
-    };
-    const auto isSameRotation = [](const JointTransform& a, const JointTransform& b)
+    const double nearby = RestPose::tolerance * static_cast<double>(longestJoint(skeleton));
+    const auto isLike = [&](const JointTransform& a, const JointTransform& b, bool isTangent)
     {
-        if (b.rotation == zeros.rotation) return glm::length(glm::dvec4(a.rotation)) <= RestPose::tolerance;
-        return RestPose::areAlike(RestPose::unitOf(a.rotation), RestPose::unitOf(b.rotation));
+        const bool isTurnedAlike =
+            isTangent ? glm::length(glm::dvec4(a.rotation)) <= RestPose::tolerance
+                      : RestPose::areAlike(Rotation::unitQuaternion(a.rotation), Rotation::unitQuaternion(b.rotation));
+        return isTurnedAlike && RestPose::areAlike(a.translation, b.translation, nearby) &&
+               RestPose::areAlike(a.scale, b.scale, RestPose::tolerance);
     };
-    const double nearby = RestPose::tolerance * RestPose::longestJoint(skeleton);
-    std::vector<JointMoves> result;
-    for (std::size_t joint = 0; joint < skeleton.jointCount(); ++joint)
-    {
-        const JointTransform& own = skeleton.joint(joint).rest;
-        result.push_back({moves(clip, joint, own, isNear(&JointTransform::translation, nearby)),
-                          moves(clip, joint, own, isSameRotation),
-                          moves(clip, joint, own, isNear(&JointTransform::scale, RestPose::tolerance))});
-    }
-    return result;
-}
-
-std::vector<bool> JointMoves::inAnyOf(const Skeleton& skeleton, const std::vector<Clip>& clips)
-{
     std::vector<bool> isMoved(skeleton.jointCount(), false);
     for (const Clip& clip : clips)
-    {
-        const std::vector<JointMoves> moves = of(skeleton, clip);
-        for (std::size_t joint = 0; joint < moves.size(); ++joint)
-            isMoved[joint] = isMoved[joint] || moves[joint].any();
-    }
+        for (std::size_t k = 0; k < clip.keyframeCount(); ++k)
+            for (std::size_t joint = 0; joint < isMoved.size(); ++joint)
+                for (std::size_t part = 0; part < clip.transformsPerTrack() && !isMoved[joint]; ++part)
+                    isMoved[joint] =
+                        !isLike(clip.at(k, joint)[part], part == 0 ? skeleton.joint(joint).rest : noTangent, part != 0);
     return isMoved;
 }
 
@@ -109,7 +78,8 @@ ClipRetargeter::Factors ClipRetargeter::factorsOf(const JointMatch& match) const
     const Joint& own = _to.skeleton.joint(match.joint);
     const Joint& other = _from.skeleton.joint(match.source);
     const glm::dquat ownParent = toRest.rotationOf(own.parent), otherParent = fromRest.rotationOf(other.parent);
-    const glm::dquat ownRest = RestPose::unitOf(own.rest.rotation), otherRest = RestPose::unitOf(other.rest.rotation);
+    const glm::dquat ownRest = Rotation::unitQuaternion(own.rest.rotation),
+                     otherRest = Rotation::unitQuaternion(other.rest.rotation);
     factors.before = glm::conjugate(ownParent) * otherParent;
     factors.after = glm::conjugate(otherRest) * glm::conjugate(otherParent) * ownParent * ownRest;
     factors.translation = match.ratio * glm::inverse(toRest.linearOf(own.parent)) * fromRest.linearOf(other.parent);
@@ -126,9 +96,10 @@ ClipRetargeter::Factors ClipRetargeter::factorsOf(const JointMatch& match) const
         glm::length(change[0]) + glm::length(change[1]) + glm::length(change[2]) <= RestPose::tolerance;
     const bool hasSameFrame = RestPose::areAlike(ownParent, otherParent);
     factors.copiesRotation = hasSameFrame && RestPose::areAlike(ownRest, otherRest);
-    factors.copiesTranslation = hasSameFrame && (!match.movesBody || isSameSize) &&
-                                RestPose::areAlike(own.rest.translation, other.rest.translation,
-                                                   RestPose::tolerance * RestPose::longestJoint(_to.skeleton));
+    factors.copiesTranslation =
+        hasSameFrame && (!match.movesBody || isSameSize) &&
+        RestPose::areAlike(own.rest.translation, other.rest.translation,
+                           RestPose::tolerance * static_cast<double>(longestJoint(_to.skeleton)));
     if (match.isByName) factors.copiesRotation = factors.copiesTranslation = true;
     factors.copiesScale =
         factors.copiesRotation && RestPose::areAlike(own.rest.scale, other.rest.scale, RestPose::tolerance);
@@ -144,10 +115,66 @@ public:
     {
     }
 
-    void follow(const JointMatch& match, const Factors& factors, const JointMoves& moves);
+    void follow(const JointMatch& match, const Factors& factors, bool isMoved)
+    {
+        const glm::dvec3 ownRest(_retargeter._to.skeleton.joint(match.joint).rest.translation);
+        const glm::dvec3 otherRest(_retargeter._from.skeleton.joint(match.source).rest.translation);
+        const bool turns = isMoved && !factors.copiesRotation;
+        const bool shifts = isMoved && factors.movesBody && !factors.copiesTranslation;
+        const bool grows = isMoved && !factors.copiesScale && isFinite(factors.scale);
+        for (std::size_t k = 0; k < _clip.keyframeCount(); ++k)
+            for (std::size_t part = 0; part < _perTrack; ++part)
+            {
+                const JointTransform& key = _clip.at(k, match.source)[part];
+                JointTransform& out = at(k, match.joint, part);
+                const glm::dvec3 shift(key.translation), growth(key.scale);
+                if (factors.copiesRotation) out.rotation = key.rotation;
+                if (turns)
+                    out.rotation = Rotation::toFloats(factors.before * Rotation::quaternion(glm::dvec4(key.rotation)) *
+                                                      factors.after);
+                if (factors.copiesRotation || turns) out.translation.w = key.translation.w;
+                if (factors.copiesTranslation) write(shift, out.translation);
+                if (shifts)
+                    write(part == 0 ? ownRest + factors.translation * (shift - otherRest) : factors.translation * shift,
+                          out.translation);
+                if (factors.copiesScale) out.scale = key.scale;
+                if (grows) write(factors.scale * growth, out.scale);
+            }
+    }
+
     /// For a joint whose difference from rest depends on several joints of `from`.
-    void followFromAfar(std::size_t keyframe, const JointPlaces& pose, const JointMatch& match, const Factors& factors);
-    void makeLinear(const JointMatch& match); ///< after the last keyframe of followFromAfar()
+    void followFromAfar(std::size_t keyframe, const JointPlaces& pose, const JointMatch& match, const Factors& factors)
+    {
+        const JointPlaces &fromRest = _retargeter._match.fromRest(), &toRest = _retargeter._match.toRest();
+        const Joint& own = _retargeter._to.skeleton.joint(match.joint);
+        const glm::dquat parent = toRest.rotationOf(own.parent);
+        const glm::dquat back = glm::conjugate(pose.turnOf(match.above, fromRest));
+        const glm::dquat turn = back * pose.turnOf(static_cast<int>(match.source), fromRest);
+        JointTransform& out = at(keyframe, match.joint, 0);
+        out.rotation =
+            Rotation::toFloats(glm::conjugate(parent) * turn * parent * Rotation::unitQuaternion(own.rest.rotation));
+        out.translation = glm::vec4(glm::vec3(own.rest.translation), _perTrack == 3 ? 1.0f : 0.0f);
+        if (!factors.movesBody && !match.isSameRig) return;
+        const glm::dvec3 way =
+            back * (pose.originOf(match.source) - pose.restOriginOf(match.source, match.above, fromRest));
+        const glm::dvec3 shift = glm::inverse(toRest.linearOf(own.parent)) * (match.ratio * way);
+        write(glm::dvec3(own.rest.translation) + shift, out.translation);
+    }
+
+    /// after the last keyframe of followFromAfar()
+    void makeLinear(const JointMatch& match)
+    {
+        if (_perTrack != 3) return;
+        const std::size_t last = _clip.keyframeCount() - 1;
+        for (std::size_t k = 0; k <= last; ++k)
+        {
+            at(k, match.joint, 1).rotation = at(k, match.joint, 2).rotation = glm::vec4(0.0f);
+            const auto slope = [&](std::size_t from, std::size_t to)
+            { return at(to, match.joint, 0).translation - at(from, match.joint, 0).translation; };
+            at(k, match.joint, 1).translation = k == 0 ? glm::vec4(0.0f) : slope(k - 1, k);
+            at(k, match.joint, 2).translation = k == last ? glm::vec4(0.0f) : slope(k, k + 1);
+        }
+    }
 
 private:
     JointTransform& at(std::size_t keyframe, std::size_t joint, std::size_t part)
@@ -160,83 +187,6 @@ private:
     std::vector<JointTransform>& _data;
     std::size_t _perTrack;
 };
-
-void ClipRetargeter::Writer::follow(const JointMatch& match, const Factors& factors, const JointMoves& moves)
-{
-    const glm::dvec3 ownRest(_retargeter._to.skeleton.joint(match.joint).rest.translation);
-    const glm::dvec3 otherRest(_retargeter._from.skeleton.joint(match.source).rest.translation);
-    const bool turns = moves.rotation && !factors.copiesRotation;
-    const bool shifts = moves.translation && factors.movesBody && !factors.copiesTranslation;
-    const bool grows = moves.scale && !factors.copiesScale && isFinite(factors.scale);
-    for (std::size_t k = 0; k < _clip.keyframeCount(); ++k)
-        for (std::size_t part = 0; part < _perTrack; ++part)
-        {
-            const JointTransform& key = _clip.at(k, match.source)[part];
-            JointTransform& out = at(k, match.joint, part);
-            const glm::dvec3 shift(key.translation), growth(key.scale);
-            if (factors.copiesRotation) out.rotation = key.rotation;
-            if (turns)
-                out.rotation =
-                    numbersOf(factors.before * Rotation::quaternion(glm::dvec4(key.rotation)) * factors.after);
-            if (factors.copiesRotation || turns) out.translation.w = key.translation.w;
-            if (factors.copiesTranslation) write(shift, out.translation);
-            if (shifts)
-                write(part == 0 ? ownRest + factors.translation * (shift - otherRest) : factors.translation * shift,
-                      out.translation);
-            if (factors.copiesScale) out.scale = key.scale;
-            if (grows) write(factors.scale * growth, out.scale);
-        }
-}
-
-void ClipRetargeter::Writer::followFromAfar(std::size_t keyframe, const JointPlaces& pose, const JointMatch& match,
-                                            const Factors& factors)
-{
-    const JointPlaces &fromRest = _retargeter._match.fromRest(), &toRest = _retargeter._match.toRest();
-    const Joint& own = _retargeter._to.skeleton.joint(match.joint);
-    const glm::dquat parent = toRest.rotationOf(own.parent);
-    const glm::dquat back = glm::conjugate(pose.turnOf(match.above, fromRest));
-    const glm::dquat turn = back * pose.turnOf(static_cast<int>(match.source), fromRest);
-    JointTransform& out = at(keyframe, match.joint, 0);
-    out.rotation = numbersOf(glm::conjugate(parent) * turn * parent * RestPose::unitOf(own.rest.rotation));
-    out.translation = glm::vec4(glm::vec3(own.rest.translation), _perTrack == 3 ? 1.0f : 0.0f);
-    if (!factors.movesBody && !match.isSameRig) return;
-    const glm::dvec3 way =
-        back * (pose.originOf(match.source) - pose.restOriginOf(match.source, match.above, fromRest));
-    const glm::dvec3 shift = glm::inverse(toRest.linearOf(own.parent)) * (match.ratio * way);
-    write(glm::dvec3(own.rest.translation) + shift, out.translation);
-}
-
-void ClipRetargeter::Writer::makeLinear(const JointMatch& match)
-{
-    if (_perTrack != 3) return;
-    const std::size_t last = _clip.keyframeCount() - 1;
-    for (std::size_t k = 0; k <= last; ++k)
-    {
-        at(k, match.joint, 1).rotation = at(k, match.joint, 2).rotation = glm::vec4(0.0f);
-        const auto slope = [&](std::size_t from, std::size_t to)
-        { return at(to, match.joint, 0).translation - at(from, match.joint, 0).translation; };
-        at(k, match.joint, 1).translation = k == 0 ? glm::vec4(0.0f) : slope(k - 1, k);
-        at(k, match.joint, 2).translation = k == last ? glm::vec4(0.0f) : slope(k, k + 1);
-    }
-}
-
-/// The rest pose of `to` in all keyframes; tangents are 0.
-std::vector<JointTransform> ClipRetargeter::restKeyframes(const Clip& clip) const
-{
-    const std::vector<JointTransform> rest = restPose(_to.skeleton, _to.morphs);
-    const std::size_t perTrack = clip.transformsPerTrack();
-    std::vector<JointTransform> data;
-    data.reserve(clip.keyframeCount() * _trackCount * perTrack);
-    for (std::size_t k = 0; k < clip.keyframeCount(); ++k)
-        for (std::size_t track = 0; track < _trackCount; ++track)
-        {
-            data.push_back(rest[track]);
-            if (perTrack == 1) continue;
-            if (track < _to.skeleton.jointCount()) data.back().translation.w = 1.0f; // slerped, see Clip
-            data.insert(data.end(), 2, zeros);
-        }
-    return data;
-}
 
 /// Heights at which the parts of a body touch the ground.
 struct ClipRetargeter::Soles
@@ -355,32 +305,23 @@ Result<std::shared_ptr<const RootMotionCurve>> ClipRetargeter::rootMotionOf(cons
                  "\" was removed before, and the joint has another rest pose here; remove it from the new clips"};
 }
 
-/// By joint of `from`: the number of joints that move, from the root down to this one.
-std::vector<std::size_t> ClipRetargeter::movesAbove(const std::vector<JointMoves>& moves) const
-{
-    std::vector<std::size_t> counts;
-    for (std::size_t joint = 0; joint < moves.size(); ++joint)
-    {
-        const int parent = _from.skeleton.joint(joint).parent;
-        counts.push_back((parent < 0 ? 0 : counts[parent]) + moves[joint].any());
-    }
-    return counts;
-}
-
 Result<Clip> ClipRetargeter::retarget(const Clip& clip) const
 {
     Result<std::shared_ptr<const RootMotionCurve>> rootMotion = rootMotionOf(clip);
     if (!rootMotion) return rootMotion.error();
-    std::vector<JointTransform> data = restKeyframes(clip);
-    const std::vector<JointMoves> moves = JointMoves::of(_from.skeleton, clip);
-    const std::vector<std::size_t> counts = movesAbove(moves);
+    std::vector<JointTransform> data = restKeyframes(restPose(_to.skeleton, _to.morphs), _to.skeleton.jointCount(),
+                                                     clip.transformsPerTrack(), clip.keyframeCount());
+    const std::vector<bool> isMoved = movedJoints(_from.skeleton, {clip});
+    std::vector<std::size_t> counts; // by joint of `from`: of joints that move, from the root down to this one
     const auto countAt = [&](int joint) { return joint < 0 ? 0 : counts[joint]; };
+    for (std::size_t joint = 0; joint < isMoved.size(); ++joint)
+        counts.push_back(countAt(_from.skeleton.joint(joint).parent) + isMoved[joint]);
     Writer writer(*this, clip, data);
     std::vector<std::size_t> afar; // indices of matches
     for (std::size_t match = 0; match < _factors.size(); ++match)
     {
         const JointMatch& joint = _match.joints()[match];
-        writer.follow(joint, _factors[match], moves[joint.source]);
+        writer.follow(joint, _factors[match], isMoved[joint.source]);
         const bool isDirect =
             joint.isBelow && countAt(_from.skeleton.joint(joint.source).parent) == countAt(joint.above);
         if (!isDirect && !joint.isByName) afar.push_back(match);

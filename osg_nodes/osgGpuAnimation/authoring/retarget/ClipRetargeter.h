@@ -4,26 +4,14 @@
 #include <osgGpuAnimation/animation/Clip.h>
 #include <osgGpuAnimation/authoring/retarget/RigMatch.h>
 
-#include <array>
 #include <memory>
 #include <vector>
 
 namespace osgGpuAnimation
 {
 
-/// The parts of each joint that a clip moves away from the rest pose, apart from rounding.
-struct JointMoves
-{
-    bool translation = false;
-    bool rotation = false;
-    bool scale = false;
-
-    bool any() const { return translation || rotation || scale; }
-    /// One per joint of the skeleton.
-    static std::vector<JointMoves> of(const Skeleton& skeleton, const Clip& clip);
-    /// One per joint of the skeleton: true if any of the clips moves it.
-    static std::vector<bool> inAnyOf(const Skeleton& skeleton, const std::vector<Clip>& clips);
-};
+/// One per joint of the skeleton: true if any of the clips moves it away from its rest pose, apart from rounding.
+std::vector<bool> movedJoints(const Skeleton& skeleton, const std::vector<Clip>& clips);
 
 /// Turns clips of one skeleton into clips of another one, keyframe by keyframe, see withClipsOf().
 ///
@@ -73,8 +61,6 @@ private:
 
     ClipRetargeter(const Rig& from, const Rig& to, RigMatch match);
     Factors factorsOf(const JointMatch& match) const;
-    std::vector<std::size_t> movesAbove(const std::vector<JointMoves>& moves) const;
-    std::vector<JointTransform> restKeyframes(const Clip& clip) const;
     void keepOnGround(const Clip& clip, std::vector<JointTransform>& data) const;
     void copyWeights(const Clip& clip, std::vector<JointTransform>& data) const;
     Result<std::shared_ptr<const RootMotionCurve>> rootMotionOf(const Clip& clip) const;

@@ -52,9 +52,9 @@ bool isFirstFrame(const Clip& clip, const Skeleton& skeleton, const std::vector<
     bool anyTurns = false;
     for (const JointMatch* match : joints)
     {
-        const glm::dquat rest = RestPose::unitOf(skeleton.joint(match->source).rest.rotation);
+        const glm::dquat rest = Rotation::unitQuaternion(skeleton.joint(match->source).rest.rotation);
         const auto isAtRest = [&](std::size_t keyframe)
-        { return isNear(RestPose::unitOf(clip.at(keyframe, match->source)->rotation), rest); };
+        { return isNear(Rotation::unitQuaternion(clip.at(keyframe, match->source)->rotation), rest); };
         if (!isAtRest(0)) return false;
         bool turns = false;
         for (std::size_t k = 1; k < clip.keyframeCount() && !turns; ++k)
@@ -100,7 +100,7 @@ void JointPlaces::add(const Joint& joint, const JointTransform& transform)
 {
     const glm::dmat4 local = transform.toMatrix().toColumns();
     jointToModel.push_back(joint.parent < 0 ? local : jointToModel[joint.parent] * local);
-    rotations.push_back(rotationOf(joint.parent) * RestPose::unitOf(transform.rotation));
+    rotations.push_back(rotationOf(joint.parent) * Rotation::unitQuaternion(transform.rotation));
 }
 
 glm::dquat JointPlaces::rotationOf(int joint) const
@@ -122,19 +122,6 @@ glm::dvec3 JointPlaces::restOriginOf(std::size_t joint, int ancestor, const Join
 
 namespace RestPose
 {
-
-glm::dquat unitOf(const glm::vec4& rotation)
-{
-    return Rotation::quaternion(Rotation::unit(glm::dvec4(rotation)));
-}
-
-double longestJoint(const Skeleton& skeleton)
-{
-    double longest = 0.0;
-    for (const Joint& joint : skeleton.joints())
-        longest = std::max(longest, glm::length(glm::dvec3(joint.rest.translation)));
-    return longest;
-}
 
 bool areAlike(const glm::dquat& a, const glm::dquat& b)
 {
@@ -221,7 +208,7 @@ void RigMatch::markSameRigs(const Rig& from, const Rig& to)
         if (topOf.back() < 0 && _jointCounterparts[joint] >= 0) topOf.back() = static_cast<int>(joint);
     }
     std::vector<bool> isSame(_jointCounterparts.size(), true); // by top
-    const double nearby = RestPose::tolerance * RestPose::longestJoint(to.skeleton);
+    const double nearby = RestPose::tolerance * static_cast<double>(longestJoint(to.skeleton));
     for (const JointMatch& match : _matches)
     {
         const Joint& own = to.skeleton.joint(match.joint);
@@ -229,10 +216,10 @@ void RigMatch::markSameRigs(const Rig& from, const Rig& to)
         const auto top = static_cast<std::size_t>(topOf[match.joint]);
         const bool isChildInBoth =
             own.parent >= 0 && other.parent >= 0 && _jointCounterparts[own.parent] == other.parent;
-        const bool isRestAlike =
-            RestPose::areAlike(RestPose::unitOf(own.rest.rotation), RestPose::unitOf(other.rest.rotation)) &&
-            RestPose::areAlike(own.rest.translation, other.rest.translation, nearby) &&
-            RestPose::areAlike(own.rest.scale, other.rest.scale, RestPose::tolerance);
+        const bool isRestAlike = RestPose::areAlike(Rotation::unitQuaternion(own.rest.rotation),
+                                                    Rotation::unitQuaternion(other.rest.rotation)) &&
+                                 RestPose::areAlike(own.rest.translation, other.rest.translation, nearby) &&
+                                 RestPose::areAlike(own.rest.scale, other.rest.scale, RestPose::tolerance);
         if (!isRestAlike || !(top == match.joint || isChildInBoth)) isSame[top] = false;
     }
     for (JointMatch& match : _matches)
@@ -243,7 +230,7 @@ void RigMatch::markSameRigs(const Rig& from, const Rig& to)
 /// anywhere.
 bool RigMatch::hasSameBones(const Rig& from, const Rig& to) const
 {
-    const double nearby = boneTolerance * RestPose::longestJoint(to.skeleton);
+    const double nearby = boneTolerance * static_cast<double>(longestJoint(to.skeleton));
     return std::all_of(_matches.begin(), _matches.end(),
                        [&](const JointMatch& match)
                        {
@@ -260,8 +247,8 @@ std::vector<const JointMatch*> RigMatch::otherRests(const Rig& from, const Rig& 
 {
     std::vector<const JointMatch*> others;
     for (const JointMatch& match : _matches)
-        if (!isNear(RestPose::unitOf(to.skeleton.joint(match.joint).rest.rotation),
-                    RestPose::unitOf(from.skeleton.joint(match.source).rest.rotation)))
+        if (!isNear(Rotation::unitQuaternion(to.skeleton.joint(match.joint).rest.rotation),
+                    Rotation::unitQuaternion(from.skeleton.joint(match.source).rest.rotation)))
             others.push_back(&match);
     return others;
 }

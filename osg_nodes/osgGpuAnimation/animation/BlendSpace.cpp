@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <tuple>
 
 namespace osgGpuAnimation
 {
@@ -146,16 +147,6 @@ double BlendSpace::Point::phaseAt(double time) const
     return (static_cast<double>(stretch) + std::clamp(share, 0.0, 1.0)) / static_cast<double>(stretches);
 }
 
-namespace
-{
-
-bool isLighter(const BlendSpace::Weight& a, const BlendSpace::Weight& b)
-{
-    return a.weight < b.weight || (a.weight == b.weight && a.point > b.point);
-}
-
-} // namespace
-
 BlendSpace::Mix BlendSpace::mixAt(const glm::dvec2& parameter) const
 {
     static constexpr double max = 1e12; // squares stay finite
@@ -177,12 +168,12 @@ BlendSpace::Mix BlendSpace::mixAt(const glm::dvec2& parameter) const
     {
         const Weight added{nearestCell->points[corner], nearest.weights[corner]};
         if (added.weight < negligibleWeight) continue;
-        std::size_t place = mix.count++;
-        for (; place > 0 && isLighter(added, mix.weights[place - 1]); --place)
-            mix.weights[place] = mix.weights[place - 1];
-        mix.weights[place] = added;
+        mix.weights[mix.count++] = added;
         whole += added.weight;
     }
+    std::sort(mix.weights.begin(), mix.weights.begin() + mix.count,
+              [](const Weight& a, const Weight& b)
+              { return std::tie(a.weight, b.point) < std::tie(b.weight, a.point); });
     for (Weight& weight : mix.weights)
         weight.weight /= whole;
     return mix;

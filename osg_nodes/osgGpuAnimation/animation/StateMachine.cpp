@@ -73,7 +73,11 @@ bool StateMachine::update(AnimationController& controller, double seconds)
         const bool isFromHere = transition.from ? *transition.from == _state : transition.to != _state;
         const auto isMet = [&](const StateGraph::Condition& condition) { return holds(condition, layer); };
         if (!isFromHere || !std::all_of(transition.conditions.begin(), transition.conditions.end(), isMet)) continue;
-        if (!enter(transition, layer)) return false;
+        if (!play(_graph->states()[transition.to], transition.seconds, transition.options, layer)) return false;
+        for (const StateGraph::Condition& condition : transition.conditions)
+            if (condition.test == StateCondition::Test::Fired) _isFired[condition.parameter] = false;
+        _state = transition.to;
+        _seconds = 0.0;
         passParameters(layer);
         return true;
     }
@@ -127,16 +131,6 @@ bool StateMachine::holds(const StateGraph::Condition& condition, const Animation
         return _seconds >= condition.value;
     }
     return false;
-}
-
-bool StateMachine::enter(const StateGraph::Transition& transition, AnimationLayer& layer)
-{
-    if (!play(_graph->states()[transition.to], transition.seconds, transition.options, layer)) return false;
-    for (const StateGraph::Condition& condition : transition.conditions)
-        if (condition.test == StateCondition::Test::Fired) _isFired[condition.parameter] = false;
-    _state = transition.to;
-    _seconds = 0.0;
-    return true;
 }
 
 } // namespace osgGpuAnimation

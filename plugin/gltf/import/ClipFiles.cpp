@@ -11,8 +11,8 @@
 #include "gltf/import/NodeTree.h"
 
 #include <osgGpuAnimation/animation/bounds/TransformBound.h>
-#include <osgGpuAnimation/authoring/retarget/ClipRetargeter.h>
 #include <osgGpuAnimation/authoring/retarget/JointNames.h>
+#include <osgGpuAnimation/authoring/retarget/RigMatch.h>
 #include <osgGpuAnimation/authoring/retarget/RigNames.h>
 #include <osgGpuAnimation/authoring/WithClipsOf.h>
 #include <osgGpuAnimation/nodes/properties/PropertyPointer.h>

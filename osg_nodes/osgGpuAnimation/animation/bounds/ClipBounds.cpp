@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/bounds/ClipBounds.h>
 
+#include <osgGpuAnimation/animation/keyframes/TrackBlend.h>
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/math/Rotation.h>
 
@@ -23,6 +24,15 @@ namespace
 constexpr auto length = [](const glm::dvec4& v) { return glm::length(v); };
 constexpr auto lengthOf3 = [](const glm::dvec4& v) { return glm::length(glm::dvec3(v)); };
 constexpr auto maxOf3 = [](const glm::dvec4& v) { return maxComponent(glm::dvec3(v)); };
+
+/// Upper bounds for a joint between two keyframes: the norms of its translation, scale and rotation matrix and of their
+/// first two derivatives over the interval [0, 1].
+struct TrackMotion
+{
+    double shift = 0.0, shift1 = 0.0, shift2 = 0.0; ///< translation
+    double size = 0.0, size1 = 0.0, size2 = 0.0;    ///< scale: of the largest component
+    double turn1 = 0.0, turn2 = 0.0;                ///< rotation matrix; infinite if a spline may pass through 0
+};
 
 /// A Hermite piece as a Bézier curve. The convex hull of its points contains the curve; the same is true of its
 /// derivatives.
@@ -124,30 +134,38 @@ double radiusOf(const TransformedBox& box)
     return radius;
 }
 
-} // namespace
-
-TrackMotion TrackMotion::between(const KeyframePair& keyframes, std::size_t track)
+/// Ignores the alpha of the keyframes.
+TrackMotion trackMotion(const KeyframePair& keyframes, std::size_t track)
 {
     if (keyframes.spline) return boundSpline(keyframes.first + 3 * track, keyframes.second + 3 * track);
     return boundLinear(keyframes.first[track], keyframes.second[track]);
 }
 
-ChainMotion ChainMotion::child(const TrackMotion& motion) const
+/// Upper bounds for a joint's transform to model space, v -> A v + c, from root to leaf by the product rule.
+struct ChainMotion
 {
-    const double turned = motion.size; // |R S| and its derivatives
-    const double turned1 = motion.turn1 * motion.size + motion.size1;
-    const double turned2 = motion.turn2 * motion.size + 2.0 * motion.turn1 * motion.size1 + motion.size2;
-    ChainMotion result;
-    result.linear = linear * turned;
-    result.linear1 = linear1 * turned + linear * turned1;
-    result.linear2 = linear2 * turned + 2.0 * linear1 * turned1 + linear * turned2;
-    result.origin = origin + linear * motion.shift;
-    result.origin2 = origin2 + linear2 * motion.shift + 2.0 * linear1 * motion.shift1 + linear * motion.shift2;
-    return result;
-}
+    double linear = 1.0, linear1 = 0.0, linear2 = 0.0; ///< A's operator norm and those of its derivatives
+    double origin = 0.0, origin2 = 0.0;                ///< |c| and |c''|
 
-namespace
-{
+    ChainMotion child(const TrackMotion& motion) const
+    {
+        const double turned = motion.size; // |R S| and its derivatives
+        const double turned1 = motion.turn1 * motion.size + motion.size1;
+        const double turned2 = motion.turn2 * motion.size + 2.0 * motion.turn1 * motion.size1 + motion.size2;
+        ChainMotion result;
+        result.linear = linear * turned;
+        result.linear1 = linear1 * turned + linear * turned1;
+        result.linear2 = linear2 * turned + 2.0 * linear1 * turned1 + linear * turned2;
+        result.origin = origin + linear * motion.shift;
+        result.origin2 = origin2 + linear2 * motion.shift + 2.0 * linear1 * motion.shift1 + linear * motion.shift2;
+        return result;
+    }
+
+    /// The largest distance from the root of a point within radius of the joint's origin.
+    double reach(double radius) const { return origin + linear * radius; }
+    /// The largest deviation of such a point from the straight line between its two ends: |p''| / 8.
+    double maxDeviation(double radius) const { return (origin2 + linear2 * radius) / 8.0; }
+};
 
 /// Moves the boxes of the palette entries through a clip and collects the space that they cover.
 ///
@@ -243,7 +261,7 @@ private:
             if (!_isNeeded[j]) continue;
             const int parent = _set.skeleton().joint(j).parent;
             const ChainMotion above = parent < 0 ? ChainMotion() : _motions[parent];
-            _motions[j] = above.child(TrackMotion::between(keyframes, j));
+            _motions[j] = above.child(trackMotion(keyframes, j));
         }
     }
 

@@ -8,6 +8,7 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <utility>
 
 namespace osgGpuAnimation
@@ -60,46 +61,32 @@ std::vector<std::size_t> sweepOrder(const Points& points)
     return order;
 }
 
-/// Adds points one by one outside the hull and connects each to the edges that it sees.
-class SweepHull
+/// Triangles of points in an order in which each lies outside the hull of those before it: those before the apex lie on
+/// one line. Connects each later point to the edges of the hull that it sees; BlendSpace::create() reports a point that
+/// sees none.
+std::vector<Corners> sweep(const Points& points, const std::vector<std::size_t>& order, std::size_t apex)
 {
-public:
-    /// first: the points on one line that come first in the order, at least two. apex: the first point beside the line.
-    SweepHull(const Points& points, const std::vector<std::size_t>& line, std::size_t apex) : _points(points)
+    std::vector<Corners> triangles;
+    std::set<std::pair<std::size_t, std::size_t>> edges; // directed: those of the hull have no opposite
+    const auto add = [&](std::size_t from, std::size_t to, std::size_t point)
     {
-        const bool isLeft = signedArea(points, line.front(), line.back(), apex) > 0.0;
-        for (std::size_t i = 0; i + 1 < line.size(); ++i)
-            _triangles.push_back(isLeft ? Corners{line[i], line[i + 1], apex} : Corners{line[i + 1], line[i], apex});
-        _hull = line;
-        if (!isLeft) std::reverse(_hull.begin(), _hull.end());
-        _hull.push_back(apex);
-    }
-
-    void add(std::size_t point)
+        triangles.push_back({from, to, point});
+        edges.insert({{from, to}, {to, point}, {point, from}});
+    };
+    const bool isLeft = signedArea(points, order.front(), order[apex - 1], order[apex]) > 0.0;
+    for (std::size_t i = 1; i < apex; ++i)
+        add(order[isLeft ? i - 1 : i], order[isLeft ? i : i - 1], order[apex]);
+    for (std::size_t i = apex + 1; i < order.size(); ++i)
     {
-        const std::size_t count = _hull.size();
-        const auto sees = [&](std::size_t edge)
-        { return signedArea(_points, _hull[edge % count], _hull[(edge + 1) % count], point) < -flatArea; };
-        std::size_t first = 0;
-        while (first < count && !(sees(first) && !sees(first + count - 1)))
-            ++first;
-        if (first == count) return; // BlendSpace::create() reports a point without a cell
-        std::vector<std::size_t> hull{_hull[first], point};
-        std::size_t edge = first;
-        for (; edge < first + count && sees(edge); ++edge)
-            _triangles.push_back({_hull[(edge + 1) % count], _hull[edge % count], point});
-        for (; edge < first + count; ++edge)
-            hull.push_back(_hull[edge % count]);
-        _hull = std::move(hull);
+        std::vector<std::pair<std::size_t, std::size_t>> seen;
+        for (const auto& [from, to] : edges)
+            if (edges.count({to, from}) == 0 && signedArea(points, from, to, order[i]) < -flatArea)
+                seen.emplace_back(from, to);
+        for (const auto& [from, to] : seen)
+            add(to, from, order[i]);
     }
-
-    std::vector<Corners> takeTriangles() { return std::move(_triangles); }
-
-private:
-    const Points& _points;
-    std::vector<std::size_t> _hull; ///< counterclockwise
-    std::vector<Corners> _triangles;
-};
+    return triangles;
+}
 
 /// True if the point lies inside the circle around the counterclockwise triangle by more than rounding.
 bool isInCircle(const Points& points, const Corners& triangle, std::size_t point)
@@ -153,10 +140,7 @@ std::vector<PlaneCell> triangulate(const std::vector<glm::dvec2>& points)
     while (apex < order.size() && std::abs(signedArea(scaled, order[0], order[apex - 1], order[apex])) <= flatArea)
         ++apex;
     if (apex >= order.size()) return chain(order);
-    SweepHull hull(scaled, {order.begin(), order.begin() + apex}, order[apex]);
-    for (std::size_t i = apex + 1; i < order.size(); ++i)
-        hull.add(order[i]);
-    std::vector<Corners> triangles = hull.takeTriangles();
+    std::vector<Corners> triangles = sweep(scaled, order, apex);
     for (std::size_t round = 0; round < points.size() && flipOnce(scaled, triangles); ++round)
         continue;
     std::vector<PlaneCell> cells;

@@ -135,6 +135,27 @@ bool areAlike(const glm::vec4& a, const glm::vec4& b, double max)
 
 } // namespace RestPose
 
+std::vector<bool> movedJoints(const Skeleton& skeleton, const std::vector<Clip>& clips)
+{
+    const double nearby = RestPose::tolerance * static_cast<double>(longestJoint(skeleton));
+    const auto isLike = [&](const JointTransform& a, const JointTransform& b, bool isTangent)
+    {
+        const bool isTurnedAlike =
+            isTangent ? glm::length(glm::dvec4(a.rotation)) <= RestPose::tolerance
+                      : RestPose::areAlike(Rotation::unitQuaternion(a.rotation), Rotation::unitQuaternion(b.rotation));
+        return isTurnedAlike && RestPose::areAlike(a.translation, b.translation, nearby) &&
+               RestPose::areAlike(a.scale, b.scale, RestPose::tolerance);
+    };
+    std::vector<bool> isMoved(skeleton.jointCount(), false);
+    for (const Clip& clip : clips)
+        for (std::size_t k = 0; k < clip.keyframeCount(); ++k)
+            for (std::size_t joint = 0; joint < isMoved.size(); ++joint)
+                for (std::size_t part = 0; part < clip.transformsPerTrack() && !isMoved[joint]; ++part)
+                    isMoved[joint] =
+                        !isLike(clip.at(k, joint)[part], part == 0 ? skeleton.joint(joint).rest : noTangent, part != 0);
+    return isMoved;
+}
+
 RigMatch::RigMatch(const Rig& from, const Rig& to, const RetargetOptions& options)
     : _fromRest(from.skeleton), _toRest(to.skeleton),
       _jointCounterparts(

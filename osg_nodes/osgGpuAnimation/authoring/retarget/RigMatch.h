@@ -60,6 +60,9 @@ bool areAlike(const glm::vec4& a, const glm::vec4& b, double max);
 
 } // namespace RestPose
 
+/// One per joint of the skeleton: true if any of the clips moves it away from its rest pose, apart from rounding.
+std::vector<bool> movedJoints(const Skeleton& skeleton, const std::vector<Clip>& clips);
+
 /// A joint of the rig `to` with its counterpart.
 struct JointMatch
 {

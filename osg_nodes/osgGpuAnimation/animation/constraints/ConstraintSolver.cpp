@@ -4,7 +4,6 @@
 #include <osgGpuAnimation/animation/constraints/AxisTurns.h>
 #include <osgGpuAnimation/math/Rotation.h>
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 #include <glm/matrix.hpp>

@@ -10,7 +10,6 @@
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/authoring/retarget/JointNames.h>
 #include <osgGpuAnimation/authoring/retarget/RigMatch.h>
-#include <osgGpuAnimation/authoring/retarget/RigNames.h>
 #include <osgGpuAnimation/math/Rotation.h>
 
 #include <glm/geometric.hpp>

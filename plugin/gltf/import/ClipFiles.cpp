@@ -13,7 +13,6 @@
 #include <osgGpuAnimation/animation/bounds/TransformBound.h>
 #include <osgGpuAnimation/authoring/retarget/JointNames.h>
 #include <osgGpuAnimation/authoring/retarget/RigMatch.h>
-#include <osgGpuAnimation/authoring/retarget/RigNames.h>
 #include <osgGpuAnimation/authoring/WithClipsOf.h>
 #include <osgGpuAnimation/nodes/properties/PropertyPointer.h>
 

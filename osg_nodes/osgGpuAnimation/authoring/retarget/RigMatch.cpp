@@ -2,7 +2,6 @@
 #include <osgGpuAnimation/authoring/retarget/RigMatch.h>
 
 #include <osgGpuAnimation/authoring/retarget/JointNames.h>
-#include <osgGpuAnimation/authoring/retarget/RigNames.h>
 #include <osgGpuAnimation/math/Rotation.h>
 
 #include <glm/geometric.hpp>

@@ -94,11 +94,6 @@ Result<std::vector<ConstraintChain>> chainsOf(const AnimationParts& parts)
     return chains;
 }
 
-std::string namesOf(const std::vector<Clip>& clips)
-{
-    return quotedNames(clips, [](const Clip& clip) { return clip.name(); });
-}
-
 } // namespace
 
 /// The sets that differ in their garments alone.
@@ -151,25 +146,16 @@ Result<std::shared_ptr<const AnimationSet>> AnimationSet::withConstraints(std::v
     return make(std::move(parts), _masks);
 }
 
-namespace
-{
-
-bool areEqual(const std::vector<Skin>& garments, const std::vector<Skin>& others)
-{
-    const auto isEqual = [](const Skin& garment, const Skin& other)
-    { return garment.joints == other.joints && garment.inverseBinds == other.inverseBinds; };
-    return std::equal(garments.begin(), garments.end(), others.begin(), others.end(), isEqual);
-}
-
-} // namespace
-
 Result<std::shared_ptr<const AnimationSet>> AnimationSet::withGarments(std::vector<Skin> garments) const
 {
+    const auto isSame = [](const Skin& a, const Skin& b)
+    { return a.joints == b.joints && a.inverseBinds == b.inverseBinds; };
     const std::lock_guard<std::mutex> lock(_family->mutex);
     for (auto known = _family->sets.begin(); known != _family->sets.end();)
     {
         std::shared_ptr<const AnimationSet> set = known->lock();
-        if (set && areEqual(set->garments(), garments)) return set;
+        if (set && std::equal(garments.begin(), garments.end(), set->garments().begin(), set->garments().end(), isSame))
+            return set;
         known = set ? std::next(known) : _family->sets.erase(known);
     }
     AnimationParts parts = _parts;
@@ -213,24 +199,18 @@ int AnimationSet::findClip(const std::string& name) const
 
 Result<std::size_t> AnimationSet::constraintNamed(const std::string& name) const
 {
-    const std::vector<ConstraintChain>& chains = *_constraintChains;
-    const auto nameOf = [](const ConstraintChain& chain) { return chain.name; };
-    for (std::size_t c = 0; c < chains.size(); ++c)
-        if (chains[c].name == name) return c;
-    return Error{"there is no constraint \"" + name + "\"; the constraints are " + quotedNames(chains, nameOf)};
+    return indexNamed("constraint", name, *_constraintChains);
 }
 
 Result<std::size_t> AnimationSet::clipNamed(const std::string& name) const
 {
-    const int clip = findClip(name);
-    if (clip < 0) return Error{"there is no clip \"" + name + "\"; the clips are " + namesOf(_parts.clips)};
-    return static_cast<std::size_t>(clip);
+    return indexNamed("clip", name, _parts.clips);
 }
 
 Result<std::size_t> AnimationSet::clipAt(std::size_t clip) const
 {
     if (clip >= _parts.clips.size())
-        return Error{"there is no clip " + std::to_string(clip) + "; the clips are " + namesOf(_parts.clips)};
+        return Error{"there is no clip " + std::to_string(clip) + "; the clips are " + quotedNames(_parts.clips)};
     return clip;
 }
 

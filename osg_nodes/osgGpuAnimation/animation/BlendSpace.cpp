@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/playback/FootPaths.h>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -245,7 +246,7 @@ Result<std::vector<double>> stopsOf(const Clip& clip, const std::vector<std::str
                                          [&](const ClipMarker& known) { return known.name == name; });
         if (marker == clip.markers().end())
             return Error{"clip \"" + clip.name() + "\" has no marker \"" + name + "\"; its markers are " +
-                         quotedNames(clip.markers(), [](const ClipMarker& known) { return known.name; })};
+                         quotedNames(clip.markers())};
         double time = marker->time;
         if (!stops.empty() && time < stops.back()) time += clip.duration();
         if (!stops.empty() && (time < stops.back() || time >= stops.front() + clip.duration()))

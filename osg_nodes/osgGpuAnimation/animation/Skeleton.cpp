@@ -114,11 +114,7 @@ int Skeleton::findJoint(const std::string& name) const
 
 Result<std::size_t> Skeleton::jointNamed(const std::string& name) const
 {
-    const int joint = findJoint(name);
-    if (joint < 0)
-        return Error{"there is no joint \"" + name + "\"; the joints are " +
-                     quotedNames(_joints, [](const Joint& known) { return known.name; })};
-    return static_cast<std::size_t>(joint);
+    return indexNamed("joint", name, _joints);
 }
 
 float longestJoint(const Skeleton& skeleton)

@@ -7,17 +7,6 @@
 namespace osgGpuAnimation
 {
 
-namespace
-{
-
-Error noneNamed(const std::string& what, const std::string& name, const std::vector<std::string>& names)
-{
-    return Error{"there is no " + what + " \"" + name + "\"; the " + what + "s are " +
-                 quotedNames(names, [](const std::string& known) { return known; })};
-}
-
-} // namespace
-
 StateMachine::StateMachine(std::shared_ptr<const StateGraph> graph, std::size_t layer)
     : _graph(std::move(graph)), _layer(layer)
 {
@@ -40,18 +29,18 @@ double StateMachine::value(const std::string& parameter) const
 
 Result<void> StateMachine::set(const std::string& parameter, double value)
 {
-    const std::size_t index = StateGraph::indexOf(parameter, _graph->parameters());
-    if (index == _values.size()) return noneNamed("parameter", parameter, _graph->parameters());
+    const Result<std::size_t> index = indexNamed("parameter", parameter, _graph->parameters());
+    if (!index) return index.error();
     if (std::isnan(value)) return Error{"parameter \"" + parameter + "\": its value is nan"};
-    _values[index] = value;
+    _values[index.value()] = value;
     return {};
 }
 
 Result<void> StateMachine::fire(const std::string& trigger)
 {
-    const std::size_t index = StateGraph::indexOf(trigger, _graph->triggers());
-    if (index == _isFired.size()) return noneNamed("trigger", trigger, _graph->triggers());
-    _isFired[index] = true;
+    const Result<std::size_t> index = indexNamed("trigger", trigger, _graph->triggers());
+    if (!index) return index.error();
+    _isFired[index.value()] = true;
     return {};
 }
 

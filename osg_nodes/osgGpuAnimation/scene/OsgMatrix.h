@@ -2,6 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/animation/RootMotion.h>
 #include <osgGpuAnimation/math/JointTransform.h>
 #include <osgGpuAnimation/math/Result.h>

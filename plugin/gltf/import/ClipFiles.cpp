@@ -139,9 +139,11 @@ std::vector<std::string> namesInSkins(const AnimationSet& set, const std::vector
     return chosen;
 }
 
-std::string namesText(const std::vector<std::string>& names)
+std::string namesText(std::vector<std::string> names)
 {
-    return quotedNames(names, [](const std::string& name) { return printable(name); });
+    for (std::string& name : names)
+        name = printable(name);
+    return quotedNames(names);
 }
 
 /// The joints of a skeleton by name, without namespaces.

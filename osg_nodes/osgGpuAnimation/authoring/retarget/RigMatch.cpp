@@ -181,16 +181,15 @@ Result<RigMatch> RigMatch::create(const Rig& from, const Rig& to, const Retarget
     RigMatch match(from, to, options);
     const auto isNone = [](int counterpart) { return counterpart < 0; };
     const std::vector<int>&joints = match._jointCounterparts, &morphs = match._morphCounterparts;
-    const auto nameOf = [](const Joint& joint) { return joint.name; };
     if (std::all_of(joints.begin(), joints.end(), isNone) && std::all_of(morphs.begin(), morphs.end(), isNone))
-        return Error{"no joint has a counterpart: the joints are " + quotedNames(to.skeleton.joints(), nameOf) +
-                     "; those of the clips are " + quotedNames(from.skeleton.joints(), nameOf)};
+        return Error{"no joint has a counterpart: the joints are " + quotedNames(to.skeleton.joints()) +
+                     "; those of the clips are " + quotedNames(from.skeleton.joints())};
     match.addMatches(from, to);
     match.markSameRigs(from, to);
     match.findHips(to.skeleton, options.hips);
     if (!options.hips.empty() && std::find(match._areHips.begin(), match._areHips.end(), true) == match._areHips.end())
         return Error{"the hips \"" + options.hips + "\" are no joint with a counterpart; the joints are " +
-                     quotedNames(to.skeleton.joints(), nameOf)};
+                     quotedNames(to.skeleton.joints())};
     match.findBodies(to.skeleton);
     match.markBodies(to.skeleton);
     match.markByName(from, to, options.match);

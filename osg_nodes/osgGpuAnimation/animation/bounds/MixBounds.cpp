@@ -75,11 +75,6 @@ MixBounds::MixBounds(const AnimationSet& set, Boxes boxes) : _set(set), _boxes(s
             _maxRestWeight = std::max(_maxRestWeight, std::abs(static_cast<double>(weight)));
 }
 
-MixBounds::MixBounds(const AnimationSet& set, const EntryBoxes& entryBoxes)
-    : MixBounds(set, {entryBoxes, entryBoxes, entryBoxes, std::vector<float>(entryBoxes.size())})
-{
-}
-
 MixBounds::~MixBounds() = default;
 
 const Clip* MixBounds::findClip(int clip) const

@@ -10,7 +10,7 @@
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/authoring/retarget/JointNames.h>
 #include <osgGpuAnimation/authoring/retarget/RigMatch.h>
-#include <osgGpuAnimation/authoring/retarget/RigNames.h>
+#include <osgGpuAnimation/math/Rotation.h>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -69,7 +69,7 @@ struct PosedJoints
         for (std::size_t joint = 0; joint < toModel.size(); ++joint)
         {
             const Joint& own = set->skeleton().joint(joint);
-            const glm::dquat local = RestPose::unitOf(tracks[joint].rotation);
+            const glm::dquat local = Rotation::unitQuaternion(tracks[joint].rotation);
             rotations.push_back(own.parent < 0 ? local : rotations[static_cast<std::size_t>(own.parent)] * local);
             turns[own.name] = rotations.back() * glm::conjugate(rest.rotations[joint]);
             origins[own.name] = glm::dvec3(toModel[joint].transformPoint(glm::vec3(0.0f)));

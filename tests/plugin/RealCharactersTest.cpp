@@ -10,6 +10,7 @@
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/authoring/retarget/RigMatch.h>
 #include <osgGpuAnimation/authoring/WithClipsOf.h>
+#include <osgGpuAnimation/math/Rotation.h>
 #include <osgGpuAnimation/mesh/lod/CharacterLevels.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/GroundFeet.h>
@@ -53,7 +54,7 @@ struct PlacedJoints
         Pose::jointToModel(set, tracks, AffineMatrix(), toModel);
         for (std::size_t joint = 0; joint < toModel.size(); ++joint)
         {
-            const glm::dquat local = RestPose::unitOf(tracks[joint].rotation);
+            const glm::dquat local = Rotation::unitQuaternion(tracks[joint].rotation);
             const int parent = set.skeleton().joint(joint).parent;
             rotations.push_back(parent < 0 ? local : rotations[static_cast<std::size_t>(parent)] * local);
             heights.push_back(static_cast<double>(toModel[joint].rows[1].w));

@@ -17,7 +17,7 @@ namespace osgGpuAnimation
 AnimationLayer::AnimationLayer(const Stack& stack, const AnimationLayer& other) : AnimationLayer(other)
 {
     _stack = &stack;
-    if (_posed) _posed = std::make_shared<Posed>(Posed{std::make_shared<JointPose>(*_posed->pose), _posed->share});
+    if (_pose) _pose = std::make_shared<JointPose>(*_pose);
     _crossfadeMoment = _weightFadeMoment = std::nullopt;
     _mixer.clearSteps();
 }
@@ -145,11 +145,11 @@ void AnimationLayer::stop()
 
 JointPose& AnimationLayer::pose()
 {
-    if (_posed) return *_posed->pose;
-    const double share = _state == PlayState::Stopped ? 1.0 : 0.0;
-    _posed = std::make_shared<Posed>(Posed{std::make_shared<JointPose>(_stack->set), Fade(share)});
+    if (_pose) return *_pose;
+    _pose = std::make_shared<JointPose>(_stack->set);
+    _poseShare = Fade(_state == PlayState::Stopped ? 1.0 : 0.0);
     ++_changeCount;
-    return *_posed->pose;
+    return *_pose;
 }
 
 bool AnimationLayer::showPose(double seconds, FadeCurve curve)
@@ -163,20 +163,20 @@ bool AnimationLayer::showPose(double seconds, FadeCurve curve)
 
 void AnimationLayer::fadePose(double share, double seconds, FadeCurve curve)
 {
-    if (_posed) _posed->share = Fade({_posed->share.value(), share, seconds, 0.0, curve});
+    if (_pose) _poseShare = Fade({_poseShare.value(), share, seconds, 0.0, curve});
     ++_changeCount;
 }
 
 /// The share of the step after which the pose's fade ended; none: it did not end.
 std::optional<double> AnimationLayer::advancePose(double seconds)
 {
-    if (!_posed) return std::nullopt;
-    if (_posed->share.state().to > 0.0 && clipShare() <= 0.0 && _state != PlayState::Stopped)
+    if (!_pose) return std::nullopt;
+    if (_poseShare.state().to > 0.0 && clipShare() <= 0.0 && _state != PlayState::Stopped)
     {
         _mixer.clear();
         _state = PlayState::Stopped;
     }
-    return _posed->share.advance(seconds);
+    return _poseShare.advance(seconds);
 }
 
 bool AnimationLayer::seek(double seconds)
@@ -260,7 +260,7 @@ void AnimationLayer::setBlendPriority(int blendPriority)
 void AnimationLayer::advance(double seconds)
 {
     const bool isPaused = _state == PlayState::Paused; // fades stand still: their means are their values
-    if (isPaused && _posed) _posed->share.advance(0.0);
+    if (isPaused && _pose) _poseShare.advance(0.0);
     _crossfadeMoment = isPaused ? std::nullopt : advancePose(seconds);
     _weightFadeMoment = _weight.advance(isPaused ? 0.0 : seconds);
     if (_state != PlayState::Playing && _state != PlayState::Ended) return _mixer.clearSteps();
@@ -284,8 +284,8 @@ BlendSample AnimationLayer::sampleOf(const ClipPlayback& playback, double time, 
 
 void AnimationLayer::collectPose(BlendList& out) const
 {
-    const auto weight = static_cast<float>(_posed->share.value() * _weight.value());
-    const BlendSample sample{out.addPose(_posed->pose), 0.0f, weight, maskBits() | POSE_SAMPLE_POSED};
+    const auto weight = static_cast<float>(_poseShare.value() * _weight.value());
+    const BlendSample sample{out.addPose(_pose), 0.0f, weight, maskBits() | POSE_SAMPLE_POSED};
     if (_settings.mode == Mode::Override)
         out.add(sample, _settings.blendPriority);
     else
@@ -294,7 +294,7 @@ void AnimationLayer::collectPose(BlendList& out) const
 
 void AnimationLayer::collect(BlendList& out) const
 {
-    if (_posed && _posed->isShown() && _weight.value() > 0.0) collectPose(out);
+    if (_pose && _poseShare.value() > 0.0 && _weight.value() > 0.0) collectPose(out);
     if (_state == PlayState::Stopped) return;
     for (std::size_t v = 0; v < _mixer.activeClipCount(); ++v)
     {
@@ -314,9 +314,9 @@ void AnimationLayer::collect(BlendList& out) const
 /// curve, with its weight.
 void AnimationLayer::collectMotion(RootMotionBlend& out, const RootMotionCurve& usual) const
 {
-    if (_posed && _settings.mode == Mode::Override) collectPoseMotion(out, usual);
+    if (_pose && _settings.mode == Mode::Override) collectPoseMotion(out, usual);
     if (_state == PlayState::Stopped || _settings.mode == Mode::Additive) return;
-    const double clipShare = _posed ? 1.0 - _posed->share.mean() : 1.0;
+    const double clipShare = _pose ? 1.0 - _poseShare.mean() : 1.0;
     for (std::size_t v = 0; v < _mixer.activeClipCount(); ++v)
     {
         const ClipMixer::ActiveClip& activeClip = _mixer.activeClip(v);
@@ -333,9 +333,9 @@ void AnimationLayer::collectMotion(RootMotionBlend& out, const RootMotionCurve& 
 /// A pose that sets the joint's translation holds the character in place.
 void AnimationLayer::collectPoseMotion(RootMotionBlend& out, const RootMotionCurve& usual) const
 {
-    const PoseExtent& extent = *_posed->pose->extent();
+    const PoseExtent& extent = *_pose->extent();
     if (usual.joint >= extent.joints.size() || !extent.joints[usual.joint].moves) return;
-    const double weight = _posed->share.mean() * _weight.mean() * (_mask ? _mask->weights[usual.joint] : 1.0);
+    const double weight = _poseShare.mean() * _weight.mean() * (_mask ? _mask->weights[usual.joint] : 1.0);
     out.add(RootMotion{glm::dvec3(0.0), 0.0, usual.up}, weight, _settings.blendPriority);
 }
 

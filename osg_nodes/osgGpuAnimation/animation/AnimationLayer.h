@@ -99,7 +99,7 @@ public:
     /// seconds are negative or not finite.
     bool showPose(double seconds = 0.0, FadeCurve curve = FadeCurve::Linear);
     /// The share of the pose in the layer, in [0, 1]; the clips have the remainder.
-    float poseShare() const { return _posed ? static_cast<float>(_posed->share.value()) : 0.0f; }
+    float poseShare() const { return static_cast<float>(_poseShare.value()); }
 
     /// Sets the time of the current clip. seconds: on the time line of the clip, clamped to [0, duration]. Returns
     /// false, without a change, for NaN. Without a clip it has no effect. Ended becomes Playing unless the new time is
@@ -166,14 +166,6 @@ private:
         AnimationLayer& at(std::size_t index) const { return index == 0 ? *base : *upper[index - 1]; }
     };
 
-    /// A pose and its share of the layer.
-    struct Posed
-    {
-        std::shared_ptr<JointPose> pose; ///< instructions refer to it
-        Fade share{0.0};
-        bool isShown() const { return share.value() > 0.0; }
-    };
-
     AnimationLayer(const Stack& stack, std::size_t index) : _stack(&stack), _index(index)
     {
         _settings.blendPriority = static_cast<int>(index);
@@ -183,7 +175,7 @@ private:
     AnimationLayer& operator=(const AnimationLayer&) = default;
 
     const AnimationSet& set() const { return *_stack->set; }
-    double clipShare() const { return _posed ? 1.0 - _posed->share.value() : 1.0; }
+    double clipShare() const { return _pose ? 1.0 - _poseShare.value() : 1.0; }
     std::uint32_t maskBits() const;
     ClipPlayback playbackOf(std::size_t clip) const;
     void fadePose(double share, double seconds, FadeCurve curve);
@@ -206,9 +198,10 @@ private:
     Settings _settings;
     Fade _weight{1.0};
     std::shared_ptr<const SetMask> _mask;   ///< null: none
-    std::shared_ptr<Posed> _posed;          ///< of this layer alone; null: no pose
+    std::shared_ptr<JointPose> _pose;       ///< of this layer alone; null: none; instructions refer to it
     std::optional<double> _crossfadeMoment; ///< see LayerStep
     std::optional<double> _weightFadeMoment;
+    Fade _poseShare{0.0};           ///< of the layer; 0 without a pose
     std::uint64_t _changeCount = 0; ///< changes of what collect() adds, but not by advance()
 };
 

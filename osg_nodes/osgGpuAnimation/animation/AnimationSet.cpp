@@ -94,11 +94,6 @@ Result<std::vector<ConstraintChain>> chainsOf(const AnimationParts& parts)
     return chains;
 }
 
-std::string namesOf(const std::vector<Clip>& clips)
-{
-    return quotedNames(clips, [](const Clip& clip) { return clip.name(); });
-}
-
 } // namespace
 
 /// The sets that differ in their garments alone.
@@ -115,7 +110,7 @@ AnimationSet::AnimationSet(AnimationParts parts, std::shared_ptr<MaskTable> mask
 {
     _restPose = osgGpuAnimation::restPose(_parts.skeleton, _parts.morphs);
     _firstTracksOfMorphs = firstTracksOfMorphs(_parts.skeleton, _parts.morphs);
-    _layout = layOutPalette(_parts.skeleton, _parts.skins, _parts.rigidJoints, _parts.morphs, _parts.garments);
+    _layout = layOutPalette(_parts);
     for (const Clip& clip : _parts.clips)
     {
         _firstKeyframes.push_back(_keyframeCount);
@@ -151,30 +146,16 @@ Result<std::shared_ptr<const AnimationSet>> AnimationSet::withConstraints(std::v
     return make(std::move(parts), _masks);
 }
 
-namespace
-{
-
-bool areEqual(const std::vector<Skin>& garments, const std::vector<Skin>& others)
-{
-    const auto isEqual = [](const Skin& garment, const Skin& other)
-    {
-        return garment.joints == other.joints &&
-               std::equal(garment.inverseBinds.begin(), garment.inverseBinds.end(), other.inverseBinds.begin(),
-                          other.inverseBinds.end(),
-                          [](const AffineMatrix& one, const AffineMatrix& two) { return one.rows == two.rows; });
-    };
-    return std::equal(garments.begin(), garments.end(), others.begin(), others.end(), isEqual);
-}
-
-} // namespace
-
 Result<std::shared_ptr<const AnimationSet>> AnimationSet::withGarments(std::vector<Skin> garments) const
 {
+    const auto isSame = [](const Skin& a, const Skin& b)
+    { return a.joints == b.joints && a.inverseBinds == b.inverseBinds; };
     const std::lock_guard<std::mutex> lock(_family->mutex);
     for (auto known = _family->sets.begin(); known != _family->sets.end();)
     {
         std::shared_ptr<const AnimationSet> set = known->lock();
-        if (set && areEqual(set->garments(), garments)) return set;
+        if (set && std::equal(garments.begin(), garments.end(), set->garments().begin(), set->garments().end(), isSame))
+            return set;
         known = set ? std::next(known) : _family->sets.erase(known);
     }
     AnimationParts parts = _parts;
@@ -186,20 +167,16 @@ Result<std::shared_ptr<const AnimationSet>> AnimationSet::withGarments(std::vect
     return made;
 }
 
-Result<std::shared_ptr<const AnimationSet>> AnimationSet::make(AnimationParts parts, std::shared_ptr<MaskTable> masks)
-{
-    return make(std::move(parts), std::move(masks), std::make_shared<Family>());
-}
-
 /// Adds the set to the family. The caller has locked a family that others know.
 Result<std::shared_ptr<const AnimationSet>> AnimationSet::make(AnimationParts parts, std::shared_ptr<MaskTable> masks,
-                                                               const std::shared_ptr<Family>& family)
+                                                               std::shared_ptr<Family> family)
 {
     const std::size_t trackCount = firstTracksOfMorphs(parts.skeleton, parts.morphs).back();
     if (auto fault = findFault(parts, trackCount)) return *fault;
     if (auto fault = findFaultInSize(parts.clips)) return *fault;
     Result<std::vector<ConstraintChain>> chains = chainsOf(parts);
     if (!chains) return chains.error();
+    if (!family) family = std::make_shared<Family>();
     const std::shared_ptr<const AnimationSet> set(
         new AnimationSet(std::move(parts), std::move(masks), family,
                          std::make_shared<const std::vector<ConstraintChain>>(std::move(chains).value())));
@@ -222,24 +199,18 @@ int AnimationSet::findClip(const std::string& name) const
 
 Result<std::size_t> AnimationSet::constraintNamed(const std::string& name) const
 {
-    const std::vector<ConstraintChain>& chains = *_constraintChains;
-    const auto nameOf = [](const ConstraintChain& chain) { return chain.name; };
-    for (std::size_t c = 0; c < chains.size(); ++c)
-        if (chains[c].name == name) return c;
-    return Error{"there is no constraint \"" + name + "\"; the constraints are " + quotedNames(chains, nameOf)};
+    return indexNamed("constraint", name, *_constraintChains);
 }
 
 Result<std::size_t> AnimationSet::clipNamed(const std::string& name) const
 {
-    const int clip = findClip(name);
-    if (clip < 0) return Error{"there is no clip \"" + name + "\"; the clips are " + namesOf(_parts.clips)};
-    return static_cast<std::size_t>(clip);
+    return indexNamed("clip", name, _parts.clips);
 }
 
 Result<std::size_t> AnimationSet::clipAt(std::size_t clip) const
 {
     if (clip >= _parts.clips.size())
-        return Error{"there is no clip " + std::to_string(clip) + "; the clips are " + namesOf(_parts.clips)};
+        return Error{"there is no clip " + std::to_string(clip) + "; the clips are " + quotedNames(_parts.clips)};
     return clip;
 }
 

@@ -126,9 +126,8 @@ private:
 
     AnimationSet(AnimationParts parts, std::shared_ptr<MaskTable> masks, std::shared_ptr<Family> family,
                  std::shared_ptr<const std::vector<ConstraintChain>> constraintChains);
-    static Result<std::shared_ptr<const AnimationSet>> make(AnimationParts parts, std::shared_ptr<MaskTable> masks);
     static Result<std::shared_ptr<const AnimationSet>> make(AnimationParts parts, std::shared_ptr<MaskTable> masks,
-                                                            const std::shared_ptr<Family>& family);
+                                                            std::shared_ptr<Family> family = nullptr);
 
     AnimationParts _parts;
     std::vector<JointTransform> _restPose;

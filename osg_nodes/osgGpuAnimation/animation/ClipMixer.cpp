@@ -21,11 +21,6 @@ double finiteProduct(double a, double b)
     return std::clamp(a * b, -max, max);
 }
 
-} // namespace
-
-namespace
-{
-
 /// A step through the common time line of a blend space as a step through one of its clips.
 PlaybackStep scaled(PlaybackStep step, double factor)
 {
@@ -128,9 +123,8 @@ void ClipMixer::spread(std::shared_ptr<const BlendSpace> space, std::size_t poin
 
 void ClipMixer::setParameter(const glm::dvec2& parameter)
 {
-    const auto space = std::find_if(_spaces.begin(), _spaces.end(),
-                                    [&](const ActiveSpace& active) { return active.number == _current.space; });
-    if (_current.space < 0 || space == _spaces.end()) return;
+    ActiveSpace* space = ownSpace();
+    if (!space) return;
     space->parameter = parameter;
     const auto isOfSpace = [&](const ActiveClip& activeClip) { return activeClip.space == _current.space; };
     _leaving.erase(std::remove_if(_leaving.begin(), _leaving.end(), isOfSpace), _leaving.end());
@@ -166,13 +160,11 @@ double ClipMixer::phaseFor(int clip) const
 void ClipMixer::seek(double seconds)
 {
     _current.playback.seek(seconds);
-    for (ActiveSpace& space : _spaces)
-    {
-        if (space.number != _current.space) continue;
-        space.phase = phaseIn(space.space->points()[_current.point], _current.playback);
-        space.isFresh = true;
-        placeClips(space);
-    }
+    ActiveSpace* space = ownSpace();
+    if (!space) return;
+    space->phase = phaseIn(space->space->points()[_current.point], _current.playback);
+    space->isFresh = true;
+    placeClips(*space);
 }
 
 void ClipMixer::setSpeed(double speed)
@@ -186,19 +178,17 @@ void ClipMixer::setLoopMode(LoopMode mode)
     const bool isNew = mode != _current.playback.loopMode();
     for (std::size_t i = 0; i < activeClipCount(); ++i)
         if (isCurrent(at(i))) at(i).playback.setLoopMode(mode);
-    for (ActiveSpace& space : _spaces)
-    {
-        if (space.number != _current.space || !isNew) continue;
-        space.isReturning = false;
-        space.phase = phaseIn(space.space->points()[_current.point], _current.playback);
-        placeClips(space);
-    }
+    ActiveSpace* space = ownSpace();
+    if (!space || !isNew) return;
+    space->isReturning = false;
+    space->phase = phaseIn(space->space->points()[_current.point], _current.playback);
+    placeClips(*space);
 }
 
-const ClipMixer::ActiveSpace* ClipMixer::findSpace(int number) const
+ClipMixer::ActiveSpace* ClipMixer::ownSpace()
 {
-    for (const ActiveSpace& space : _spaces)
-        if (space.number == number) return &space;
+    for (ActiveSpace& space : _spaces)
+        if (space.number == _current.space) return &space;
     return nullptr;
 }
 

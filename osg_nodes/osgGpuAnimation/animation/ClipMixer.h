@@ -62,7 +62,7 @@ public:
     /// The newest active clip, of a blend space the heaviest; a default ClipPlayback if the mixer is empty.
     const ClipPlayback& current() const { return _current.playback; }
     /// The newest active clip is of this blend space; null: of none.
-    const ActiveSpace* currentSpace() const { return _spaces.empty() ? nullptr : findSpace(_current.space); }
+    const ActiveSpace* currentSpace() const { return const_cast<ClipMixer*>(this)->ownSpace(); }
     bool isFading() const { return !isEmpty() && !_fade.isFinished(); } ///< true during a crossfade
 
     const Fade& fade() const { return _fade; } ///< share of the current active clip, from 0 to 1
@@ -104,7 +104,7 @@ private:
     {
         return &activeClip == &_current || (activeClip.space >= 0 && activeClip.space == _current.space);
     }
-    const ActiveSpace* findSpace(int number) const;
+    ActiveSpace* ownSpace(); ///< see currentSpace()
     void remove(std::size_t index);
     void removeFaded();
     void removeUnusedSpaces();

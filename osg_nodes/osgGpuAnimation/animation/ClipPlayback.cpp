@@ -63,7 +63,17 @@ PlaybackStep ClipPlayback::move(double seconds)
     PlaybackStep move;
     move.from = move.to = _time;
     move.includesStart = _isFresh;
-    if (_loopMode == LoopMode::Once) return moveOnce(seconds);
+    if (_loopMode == LoopMode::Once)
+    {
+        const double time = _time + seconds;
+        move.hasFinished = _duration <= 0.0 || (seconds > 0.0 && time >= _duration) || (seconds < 0.0 && time <= 0.0);
+        _time = std::clamp(time, 0.0, _duration);
+        _isFresh = _isFresh && seconds == 0.0 && !move.hasFinished;
+        move.to = _time;
+        move.distance = seconds == 0.0 ? 0.0 : move.to - move.from;
+        move.isAscending = seconds >= 0.0;
+        return move;
+    }
     if (seconds == 0.0) return move;
     _isFresh = false;
     move.distance = seconds;
@@ -91,21 +101,6 @@ PlaybackStep ClipPlayback::move(double seconds)
         move.crossings = 2.0 * periods + (phase <= _duration ? 0.0 : 1.0) - half;
     }
     move.to = _time;
-    return move;
-}
-
-PlaybackStep ClipPlayback::moveOnce(double seconds)
-{
-    PlaybackStep move;
-    move.from = _time;
-    move.includesStart = _isFresh;
-    const double time = _time + seconds;
-    move.hasFinished = _duration <= 0.0 || (seconds > 0.0 && time >= _duration) || (seconds < 0.0 && time <= 0.0);
-    _time = std::clamp(time, 0.0, _duration);
-    _isFresh = _isFresh && seconds == 0.0 && !move.hasFinished;
-    move.to = _time;
-    move.distance = seconds == 0.0 ? 0.0 : _time - move.from;
-    move.isAscending = seconds >= 0.0;
     return move;
 }
 

@@ -58,8 +58,6 @@ public:
     PlaybackStep move(double seconds);
 
 private:
-    PlaybackStep moveOnce(double seconds);
-
     int _clip = -1;
     double _duration = 0.0;
     double _time = 0.0;

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <tuple>
 
 namespace osgGpuAnimation
 {
@@ -255,20 +256,21 @@ Result<void> JointPose::setTracks(const std::vector<Track>& tracks)
     JointPose pose(_set);
     for (const Track& stored : tracks)
     {
-        const auto has = [&](Part part) { return (stored.numbers >> 4 * part & partBits) == partBits; };
         bool isGood = stored.track < _set->trackCount() && stored.numbers >> 12 == 0;
         if (isGood && hasJoint(stored.track))
         {
-            JointTransform allowed = stored.values;
-            if (!has(Part::Translation)) allowed.translation = glm::vec4(0.0f);
-            if (!has(Part::Rotation)) allowed.rotation = glm::vec4(0, 0, 0, 1);
-            if (!has(Part::Scale)) allowed.scale = glm::vec4(0.0f);
-            isGood = isAllowed(allowed);
-            if (isGood) allowed.rotation = *unitRotation(allowed.rotation); // exactly that of setRotation()
-            for (const auto& [part, value] :
-                 {std::pair(Part::Translation, allowed.translation), std::pair(Part::Rotation, allowed.rotation),
-                  std::pair(Part::Scale, allowed.scale)})
-                if (has(part)) pose._keyframe->setPart(stored.track, part, value);
+            const JointTransform& values = stored.values;
+            const std::optional<glm::vec4> unit = unitRotation(values.rotation); // exactly that of setRotation()
+            const std::tuple<Part, glm::vec4, bool> parts[] = {
+                {Part::Translation, values.translation, isAllowed(glm::vec3(values.translation))},
+                {Part::Rotation, unit.value_or(values.rotation), unit.has_value()},
+                {Part::Scale, values.scale, isAllowed(glm::vec3(values.scale))}};
+            for (const auto& [part, value, isGoodPart] : parts)
+                if ((stored.numbers >> 4 * part & partBits) != 0)
+                {
+                    isGood = isGood && isGoodPart;
+                    pose._keyframe->setPart(stored.track, part, value);
+                }
             isGood = isGood && pose._keyframe->setNumbers(stored.track) == stored.numbers;
         }
         else if (isGood)
@@ -299,7 +301,7 @@ void JointPose::growExtent(std::size_t firstJoint, std::size_t endJoint)
             continue;
         const std::uint32_t numbers = _keyframe->setNumbers(joint);
         if (numbers == 0) continue;
-        if (!grown) longest = longestJoint(*_set);
+        if (!grown) longest = longestJoint(_set->skeleton());
         if (!grown) grown = std::make_shared<PoseExtent>(*_extent);
         grown->joints.resize(_set->skeleton().jointCount());
         PoseExtent::Joint& known = grown->joints[joint];

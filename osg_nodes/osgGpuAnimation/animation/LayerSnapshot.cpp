@@ -115,9 +115,9 @@ LayerSnapshot LayerSnapshot::of(const AnimationLayer& layer)
     snapshot.crossfade = mixer.fade().state();
     snapshot.weight = layer._weight.state();
     if (layer._mask) snapshot.mask = layer._mask->weights;
-    if (!layer._posed) return snapshot;
-    snapshot.pose = layer._posed->pose->tracks();
-    snapshot.poseShare = layer._posed->share.state();
+    if (!layer._pose) return snapshot;
+    snapshot.pose = layer._pose->tracks();
+    snapshot.poseShare = layer._poseShare.state();
     return snapshot;
 }
 
@@ -132,12 +132,11 @@ Result<void> LayerSnapshot::restoreTo(AnimationLayer& layer) const
         if (!used) return used.error();
         usedMask = used.value();
     }
-    using Posed = AnimationLayer::Posed;
-    std::shared_ptr<Posed> posed;
+    std::shared_ptr<JointPose> posed;
     if (!pose.empty() || Fade(poseShare).value() > 0.0)
     {
-        posed = std::make_shared<Posed>(Posed{std::make_shared<JointPose>(layer._stack->set), Fade(poseShare)});
-        if (const Result<void> isSet = posed->pose->setTracks(pose); !isSet) return isSet.error();
+        posed = std::make_shared<JointPose>(layer._stack->set);
+        if (const Result<void> isSet = posed->setTracks(pose); !isSet) return isSet.error();
     }
     const Result<std::vector<ActiveSpace>> usedSpaces = spacesOf(*this, set);
     if (!usedSpaces) return Error{"a layer with " + usedSpaces.error().message};
@@ -154,7 +153,8 @@ Result<void> LayerSnapshot::restoreTo(AnimationLayer& layer) const
     layer._settings = settings;
     layer._weight = Fade(weight);
     layer._mask = usedMask;
-    layer._posed = posed;
+    layer._pose = posed;
+    layer._poseShare = posed ? Fade(poseShare) : Fade(0.0);
     ++layer._changeCount;
     return {};
 }

@@ -3,6 +3,8 @@
 
 #include <osgGpuAnimation/math/Rotation.h>
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <cstdint>
 #include <numeric>
@@ -112,11 +114,15 @@ int Skeleton::findJoint(const std::string& name) const
 
 Result<std::size_t> Skeleton::jointNamed(const std::string& name) const
 {
-    const int joint = findJoint(name);
-    if (joint < 0)
-        return Error{"there is no joint \"" + name + "\"; the joints are " +
-                     quotedNames(_joints, [](const Joint& known) { return known.name; })};
-    return static_cast<std::size_t>(joint);
+    return indexNamed("joint", name, _joints);
+}
+
+float longestJoint(const Skeleton& skeleton)
+{
+    float longest = 0.0f;
+    for (const Joint& joint : skeleton.joints())
+        longest = std::max(longest, glm::length(glm::vec3(joint.rest.translation)));
+    return longest;
 }
 
 std::vector<std::size_t> firstTracksOfMorphs(const Skeleton& skeleton, const std::vector<MorphWeights>& morphs)
@@ -141,6 +147,22 @@ std::vector<JointTransform> restPose(const Skeleton& skeleton, const std::vector
                 morph.defaults[i];
     }
     return tracks;
+}
+
+std::vector<JointTransform> restKeyframes(const std::vector<JointTransform>& rest, std::size_t jointCount,
+                                          std::size_t transformsPerTrack, std::size_t keyframeCount)
+{
+    std::vector<JointTransform> data;
+    data.reserve(rest.size() * transformsPerTrack * keyframeCount);
+    for (std::size_t k = 0; k < keyframeCount; ++k)
+        for (std::size_t track = 0; track < rest.size(); ++track)
+        {
+            data.push_back(rest[track]);
+            if (transformsPerTrack == 1) continue;
+            if (track < jointCount) data.back().translation.w = 1.0f; // slerped, see Clip
+            data.insert(data.end(), 2, noTangent);
+        }
+    return data;
 }
 
 } // namespace osgGpuAnimation

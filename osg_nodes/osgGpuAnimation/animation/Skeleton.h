@@ -49,11 +49,20 @@ private:
     std::unordered_map<int, int> _jointOfSourceNode;
 };
 
+/// The largest length of a joint at rest.
+float longestJoint(const Skeleton& skeleton);
+
 /// The first track of each morph's weight blocks, and at the end the number of all tracks. Joints have the first
 /// tracks.
 std::vector<std::size_t> firstTracksOfMorphs(const Skeleton& skeleton, const std::vector<MorphWeights>& morphs);
 
 /// One JointTransform per track: the rest transforms of the joints, then the default weights as weight blocks.
 std::vector<JointTransform> restPose(const Skeleton& skeleton, const std::vector<MorphWeights>& morphs);
+
+constexpr JointTransform noTangent{glm::vec4(0.0f), glm::vec4(0.0f), glm::vec4(0.0f)}; ///< of a constant track
+
+/// The rest pose in all keyframes of a clip, with tangents of 0 in splines: see Clip::data(). rest: of restPose().
+std::vector<JointTransform> restKeyframes(const std::vector<JointTransform>& rest, std::size_t jointCount,
+                                          std::size_t transformsPerTrack, std::size_t keyframeCount);
 
 } // namespace osgGpuAnimation

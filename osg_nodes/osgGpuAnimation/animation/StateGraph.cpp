@@ -238,10 +238,7 @@ Result<void> StateGraph::addCondition(Transition& transition, const std::string&
 
 Result<std::size_t> StateGraph::stateNamed(const std::string& name) const
 {
-    for (std::size_t s = 0; s < _states.size(); ++s)
-        if (_states[s].name == name) return s;
-    return Error{"there is no state \"" + name + "\"; the states are " +
-                 quotedNames(_states, [](const State& known) { return known.name; })};
+    return indexNamed("state", name, _states);
 }
 
 } // namespace osgGpuAnimation

@@ -7,17 +7,6 @@
 namespace osgGpuAnimation
 {
 
-namespace
-{
-
-Error noneNamed(const std::string& what, const std::string& name, const std::vector<std::string>& names)
-{
-    return Error{"there is no " + what + " \"" + name + "\"; the " + what + "s are " +
-                 quotedNames(names, [](const std::string& known) { return known; })};
-}
-
-} // namespace
-
 StateMachine::StateMachine(std::shared_ptr<const StateGraph> graph, std::size_t layer)
     : _graph(std::move(graph)), _layer(layer)
 {
@@ -40,18 +29,18 @@ double StateMachine::value(const std::string& parameter) const
 
 Result<void> StateMachine::set(const std::string& parameter, double value)
 {
-    const std::size_t index = StateGraph::indexOf(parameter, _graph->parameters());
-    if (index == _values.size()) return noneNamed("parameter", parameter, _graph->parameters());
+    const Result<std::size_t> index = indexNamed("parameter", parameter, _graph->parameters());
+    if (!index) return index.error();
     if (std::isnan(value)) return Error{"parameter \"" + parameter + "\": its value is nan"};
-    _values[index] = value;
+    _values[index.value()] = value;
     return {};
 }
 
 Result<void> StateMachine::fire(const std::string& trigger)
 {
-    const std::size_t index = StateGraph::indexOf(trigger, _graph->triggers());
-    if (index == _isFired.size()) return noneNamed("trigger", trigger, _graph->triggers());
-    _isFired[index] = true;
+    const Result<std::size_t> index = indexNamed("trigger", trigger, _graph->triggers());
+    if (!index) return index.error();
+    _isFired[index.value()] = true;
     return {};
 }
 
@@ -73,7 +62,11 @@ bool StateMachine::update(AnimationController& controller, double seconds)
         const bool isFromHere = transition.from ? *transition.from == _state : transition.to != _state;
         const auto isMet = [&](const StateGraph::Condition& condition) { return holds(condition, layer); };
         if (!isFromHere || !std::all_of(transition.conditions.begin(), transition.conditions.end(), isMet)) continue;
-        if (!enter(transition, layer)) return false;
+        if (!play(_graph->states()[transition.to], transition.seconds, transition.options, layer)) return false;
+        for (const StateGraph::Condition& condition : transition.conditions)
+            if (condition.test == StateCondition::Test::Fired) _isFired[condition.parameter] = false;
+        _state = transition.to;
+        _seconds = 0.0;
         passParameters(layer);
         return true;
     }
@@ -127,16 +120,6 @@ bool StateMachine::holds(const StateGraph::Condition& condition, const Animation
         return _seconds >= condition.value;
     }
     return false;
-}
-
-bool StateMachine::enter(const StateGraph::Transition& transition, AnimationLayer& layer)
-{
-    if (!play(_graph->states()[transition.to], transition.seconds, transition.options, layer)) return false;
-    for (const StateGraph::Condition& condition : transition.conditions)
-        if (condition.test == StateCondition::Test::Fired) _isFired[condition.parameter] = false;
-    _state = transition.to;
-    _seconds = 0.0;
-    return true;
 }
 
 } // namespace osgGpuAnimation

@@ -46,7 +46,6 @@ public:
 
 private:
     bool holds(const StateGraph::Condition& condition, const AnimationLayer& layer) const;
-    bool enter(const StateGraph::Transition& transition, AnimationLayer& layer);
     bool play(const StateGraph::State& state, double seconds, const CrossfadeOptions& options,
               AnimationLayer& layer) const;
     void passParameters(AnimationLayer& layer) const;

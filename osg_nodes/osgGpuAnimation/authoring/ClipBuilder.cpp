@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/authoring/ClipBuilder.h>
 
-#include <osgGpuAnimation/authoring/keyframes/ChannelCurve.h>
+#include <osgGpuAnimation/math/Hermite.h>
+#include <osgGpuAnimation/math/Rotation.h>
+
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -15,9 +18,9 @@ namespace
 {
 
 using Path = Channel::Path;
+using Interpolation = Channel::Interpolation;
 
 constexpr std::size_t componentsPerTrack = MorphWeights::weightsPerBlock;
-constexpr JointTransform zeroTransform{glm::vec4(0.0f), glm::vec4(0.0f), glm::vec4(0.0f)};
 
 float rounded(double value)
 {
@@ -39,8 +42,172 @@ const char* nameOf(Path path)
 
 std::size_t valuesPerKey(const Channel& channel)
 {
-    return channel.interpolation == Channel::Interpolation::CubicSpline ? 3 : 1;
+    return channel.interpolation == Interpolation::CubicSpline ? 3 : 1;
 }
+
+glm::dvec4 rotationAt(const double* q)
+{
+    return glm::dvec4(q[0], q[1], q[2], q[3]);
+}
+
+void store(const glm::dvec4& q, double* out)
+{
+    for (int c = 0; c < 4; ++c)
+        out[c] = q[c];
+}
+
+/// True if single precision could find the other way shorter: |cos| < 1e-6. If every term of the dot product is 0, it
+/// is 0 in any precision. a, b: of float range, so that their squares neither overflow nor vanish.
+bool isAmbiguous(const glm::dvec4& a, const glm::dvec4& b)
+{
+    const double product = glm::dot(a, b);
+    return product * product < 1e-12 * glm::dot(a, a) * glm::dot(b, b) && a * b != glm::dvec4(0.0);
+}
+
+/// The time of a clip's keyframe. At a jump two keyframes have the same time; the first of them is `before` the jump.
+struct Moment
+{
+    double time = 0.0; ///< seconds; a value that fits a float
+    bool before = false;
+};
+
+/// A checked channel as a function of time in double precision (glTF 2.0, appendix C). It keeps a cursor into the keys,
+/// so ascending moments are fast.
+class ChannelCurve
+{
+public:
+    /// The channel must outlive the curve.
+    explicit ChannelCurve(const Channel& channel)
+        : _channel(channel), _valuesPerKey(valuesPerKey(channel)),
+          _componentCount(channel.values.size() / (channel.times.size() * _valuesPerKey))
+    {
+    }
+
+    const Channel& channel() const { return _channel; }
+    std::size_t componentCount() const { return _componentCount; } ///< numbers per value
+
+    /// True for CUBICSPLINE rotations, which are not unit; false for rotations that are slerped or stepped.
+    bool isSplineRotation() const
+    {
+        return _channel.path == Path::Rotation && _channel.interpolation == Interpolation::CubicSpline;
+    }
+
+    /// Before the first key it is the first value, after the last key the last value. STEP and LINEAR rotations are
+    /// unit; CUBICSPLINE rotations are not normalized.
+    void value(const Moment& at, double* out)
+    {
+        const std::size_t key = keyAt(at);
+        const bool isRotation = _channel.path == Path::Rotation;
+        const bool oldValue =
+            _channel.interpolation == Interpolation::Step && at.before && key > 0 && _channel.times[key] == at.time;
+        const double* first = valueOfKey(oldValue ? key - 1 : key);
+        if (_channel.interpolation == Interpolation::Step || isHeldAt(key, at.time) || at.time == _channel.times[key])
+        {
+            std::copy_n(first, _componentCount, out);
+            if (isRotation && !isSplineRotation()) store(Rotation::unit(rotationAt(first)), out);
+            return;
+        }
+        const double* second = valueOfKey(key + 1);
+        const double length = _channel.times[key + 1] - _channel.times[key];
+        const double alpha = (at.time - _channel.times[key]) / length;
+        if (isRotation && !isSplineRotation())
+            return store(Rotation::slerp(rotationAt(first), rotationAt(second), alpha), out);
+        for (std::size_t c = 0; c < _componentCount; ++c)
+            out[c] = _channel.interpolation == Interpolation::Linear
+                         ? first[c] * (1.0 - alpha) + second[c] * alpha
+                         : hermite(first[c], length * tangentAfter(first)[c], second[c],
+                                   length * tangentBefore(second)[c], alpha);
+    }
+
+    /// The Hermite tangents of the piece between two moments without a key between them: the derivatives at its ends,
+    /// multiplied by its length; 0 for slerped rotations.
+    void tangents(const Moment& from, const Moment& to, double* outFirst, double* outLast)
+    {
+        std::fill_n(outFirst, _componentCount, 0.0);
+        std::fill_n(outLast, _componentCount, 0.0);
+        const std::size_t key = keyAt(from);
+        if (isHeldAt(key, to.time) || from.time == to.time || _channel.interpolation == Interpolation::Step) return;
+        const double length = _channel.times[key + 1] - _channel.times[key];
+        const double share = (to.time - from.time) / length;
+        if (_channel.interpolation == Interpolation::CubicSpline)
+        {
+            splineSlope(key, (from.time - _channel.times[key]) / length, share, outFirst);
+            splineSlope(key, (to.time - _channel.times[key]) / length, share, outLast);
+        }
+        else if (_channel.path != Path::Rotation)
+            for (std::size_t c = 0; c < _componentCount; ++c)
+                outFirst[c] = outLast[c] = (valueOfKey(key + 1)[c] - valueOfKey(key)[c]) * share;
+    }
+
+    /// Appends the times of the keys at which the value jumps: STEP keys with a new value.
+    void appendJumps(std::vector<double>& out) const
+    {
+        if (_channel.interpolation != Interpolation::Step) return;
+        for (std::size_t key = 1; key < _channel.times.size(); ++key)
+            if (!std::equal(valueOfKey(key), valueOfKey(key) + _componentCount, valueOfKey(key - 1)))
+                out.push_back(_channel.times[key]);
+    }
+
+    /// For each slerp of almost 180 degrees that contains none of the times, appends the time of its middle: the
+    /// rounding of its ends to floats could reverse its direction. times: ascending.
+    void appendMiddlesOfHalfTurns(const std::vector<double>& times, std::vector<double>& out) const
+    {
+        if (_channel.path != Path::Rotation || _channel.interpolation != Interpolation::Linear) return;
+        for (std::size_t key = 0; key + 1 < _channel.times.size(); ++key)
+        {
+            if (!isAmbiguous(rotationAt(valueOfKey(key)), rotationAt(valueOfKey(key + 1)))) continue;
+            const double from = _channel.times[key];
+            const double to = _channel.times[key + 1];
+            const auto next = std::upper_bound(times.begin(), times.end(), from);
+            const double middle = static_cast<double>(static_cast<float>(0.5 * (from + to)));
+            const bool isCut = next != times.end() && *next < to;
+            if (!isCut && from < middle && middle < to) out.push_back(middle);
+        }
+    }
+
+private:
+    const double* valueOfKey(std::size_t key) const
+    {
+        const std::size_t place = _valuesPerKey == 3 ? key * 3 + 1 : key; // in-tangent, value, out-tangent
+        return _channel.values.data() + place * _componentCount;
+    }
+
+    const double* tangentBefore(const double* value) const { return value - _componentCount; }
+    const double* tangentAfter(const double* value) const { return value + _componentCount; }
+
+    std::size_t keyAt(const Moment& at)
+    {
+        const std::vector<double>& times = _channel.times;
+        if (times[_cursor] > at.time) _cursor = 0;
+        while (_cursor + 1 < times.size() && times[_cursor + 1] <= at.time)
+            ++_cursor;
+        return _cursor;
+    }
+
+    bool isHeldAt(std::size_t key, double time) const
+    {
+        return time <= _channel.times.front() || key + 1 == _channel.times.size();
+    }
+
+    void splineSlope(std::size_t key, double alpha, double factor, double* out) const
+    {
+        const double length = _channel.times[key + 1] - _channel.times[key];
+        const double square = alpha * alpha;
+        const double* v0 = valueOfKey(key);
+        const double* v1 = valueOfKey(key + 1);
+        for (std::size_t c = 0; c < _componentCount; ++c)
+        {
+            const double m0 = length * tangentAfter(v0)[c], m1 = length * tangentBefore(v1)[c];
+            const double slope = 6.0 * (square - alpha) * (v0[c] - v1[c]) + (3.0 * square - 4.0 * alpha + 1.0) * m0 +
+                                 (3.0 * square - 2.0 * alpha) * m1;
+            out[c] = slope * factor;
+        }
+    }
+
+    const Channel& _channel;
+    std::size_t _valuesPerKey, _componentCount;
+    std::size_t _cursor = 0;
+};
 
 /// Checks the times and rounds them to floats.
 std::optional<std::string> findFaultInTimes(std::vector<double>& times)
@@ -123,71 +290,37 @@ std::vector<Moment> findMoments(const std::vector<ChannelCurve>& curves)
     return moments;
 }
 
-/// Writes numbers into one part of one track, keyframe by keyframe.
-class TrackWriter
+/// Writes a curve keyframe by keyframe. firstNumber: where it begins among the numbers of the first track; numbers
+/// beyond a track's twelve go to the next track.
+void writeCurve(ChannelCurve curve, const std::vector<Moment>& moments, const Clip& clip, std::size_t firstTrack,
+                std::size_t firstNumber, std::vector<JointTransform>& data)
 {
-public:
-    TrackWriter(std::vector<JointTransform>& data, const Clip& clip, std::size_t track, std::size_t firstComponent)
-        : _data(data), _stride(clip.keyframeStride()), _perTrack(clip.transformsPerTrack()), _place(track * _perTrack),
-          _firstComponent(firstComponent)
-    {
-    }
-
-    /// part: 0 the value, 1 the in-tangent, 2 the out-tangent. Numbers beyond a track's twelve go to the next track.
-    void write(std::size_t keyframe, std::size_t part, const std::vector<double>& numbers)
+    const std::size_t perTrack = clip.transformsPerTrack();
+    const auto at = [&](std::size_t keyframe, std::size_t track)
+    { return &data[keyframe * clip.keyframeStride() + track * perTrack]; };
+    // part: 0 the value, 1 the in-tangent, 2 the out-tangent
+    const auto write = [&](std::size_t keyframe, std::size_t part, const std::vector<double>& numbers)
     {
         for (std::size_t i = 0; i < numbers.size(); ++i)
         {
-            const std::size_t at = _firstComponent + i;
-            const std::size_t track = at / componentsPerTrack;
-            JointTransform& transform = _data[keyframe * _stride + _place + track * _perTrack + part];
-            transform.number(at % componentsPerTrack) = rounded(numbers[i]);
+            const std::size_t number = firstNumber + i;
+            at(keyframe, firstTrack + number / componentsPerTrack)[part].number(number % componentsPerTrack) =
+                rounded(numbers[i]);
         }
-    }
-
-    void markAsSplineRotation(std::size_t keyframe) { _data[keyframe * _stride + _place].translation.w = 0.0f; }
-
-private:
-    std::vector<JointTransform>& _data;
-    std::size_t _stride;
-    std::size_t _perTrack;
-    std::size_t _place;
-    std::size_t _firstComponent;
-};
-
-void writeCurve(ChannelCurve curve, const std::vector<Moment>& moments, bool spline, TrackWriter writer)
-{
-    std::vector<double> value(curve.componentCount());
+    };
+    std::vector<double> value(curve.componentCount()), last(value);
     for (std::size_t k = 0; k < moments.size(); ++k)
     {
         curve.value(moments[k], value.data());
-        writer.write(k, 0, value);
-        if (curve.isSplineRotation()) writer.markAsSplineRotation(k);
+        write(k, 0, value);
+        if (curve.isSplineRotation()) at(k, firstTrack)->translation.w = 0.0f;
     }
-    if (!spline) return;
-
-    std::vector<double> last(curve.componentCount());
-    for (std::size_t k = 0; k + 1 < moments.size(); ++k)
+    for (std::size_t k = 0; k + 1 < moments.size() && clip.form() == Clip::Form::Spline; ++k)
     {
         curve.tangents(moments[k], moments[k + 1], value.data(), last.data());
-        writer.write(k, 2, value);
-        writer.write(k + 1, 1, last);
+        write(k, 2, value);
+        write(k + 1, 1, last);
     }
-}
-
-/// Fills every keyframe with the rest pose; tangents are 0.
-void fillWithRest(const std::vector<JointTransform>& rest, std::size_t jointCount, bool spline,
-                  std::size_t keyframeCount, std::vector<JointTransform>& out)
-{
-    out.reserve(rest.size() * (spline ? 3 : 1) * keyframeCount);
-    for (std::size_t k = 0; k < keyframeCount; ++k)
-        for (std::size_t track = 0; track < rest.size(); ++track)
-        {
-            out.push_back(rest[track]);
-            if (!spline) continue;
-            if (track < jointCount) out.back().translation.w = 1.0f;
-            out.insert(out.end(), 2, zeroTransform);
-        }
 }
 
 } // namespace
@@ -249,14 +382,6 @@ Result<void> ClipBuilder::add(Channel channel)
     return {};
 }
 
-std::vector<ChannelCurve> ClipBuilder::curves() const
-{
-    std::vector<ChannelCurve> curves;
-    for (const Channel& channel : _channels)
-        curves.emplace_back(channel, componentCount(channel));
-    return curves;
-}
-
 Clip::Form ClipBuilder::form() const
 {
     const auto isSpline = [](const Channel& channel) { return valuesPerKey(channel) == 3; };
@@ -267,7 +392,8 @@ std::size_t ClipBuilder::byteSize() const
 {
     const double bytesPerKeyframe =
         static_cast<double>(sizeof(float) + _rest.size() * Clip::transformsPerTrack(form()) * sizeof(JointTransform));
-    const double bytes = bytesPerKeyframe * static_cast<double>(findMoments(curves()).size());
+    const double bytes =
+        bytesPerKeyframe * static_cast<double>(findMoments({_channels.begin(), _channels.end()}).size());
     constexpr auto max = std::numeric_limits<std::size_t>::max();
     return bytes < static_cast<double>(max) ? static_cast<std::size_t>(bytes) : max;
 }
@@ -278,12 +404,11 @@ Clip ClipBuilder::build(std::string name)
     clip._name = std::move(name);
     clip._trackCount = _rest.size();
     clip._form = form();
-    const bool spline = clip._form == Clip::Form::Spline;
-    const std::vector<ChannelCurve> curves = this->curves();
+    const std::vector<ChannelCurve> curves(_channels.begin(), _channels.end());
     const std::vector<Moment> moments = findMoments(curves);
     for (const Moment& moment : moments)
         clip._times.push_back(static_cast<float>(moment.time));
-    fillWithRest(_rest, _jointCount, spline, moments.size(), *clip._data);
+    *clip._data = restKeyframes(_rest, _jointCount, clip.transformsPerTrack(), moments.size());
     for (const ChannelCurve& curve : curves)
     {
         const auto target = static_cast<std::size_t>(curve.channel().target);
@@ -291,7 +416,7 @@ Clip ClipBuilder::build(std::string name)
         const std::size_t first = curve.channel().weight >= 0 && curve.channel().path == Path::Weights
                                       ? static_cast<std::size_t>(curve.channel().weight)
                                       : firstComponent(curve.channel().path);
-        writeCurve(curve, moments, spline, TrackWriter(*clip._data, clip, track, first));
+        writeCurve(curve, moments, clip, track, first, *clip._data);
     }
     _channels.clear();
     _driven.assign(_driven.size(), false);

@@ -15,8 +15,6 @@
 namespace osgGpuAnimation
 {
 
-class ChannelCurve;
-
 /// Converts channels, each with its own times, into a Clip: keyframes of all tracks at the union of all key times.
 ///
 /// - LINEAR is exact: a slerp cut in two gives the same slerp.
@@ -48,7 +46,6 @@ public:
     std::size_t byteSize() const;
 
 private:
-    std::vector<ChannelCurve> curves() const;
     Clip::Form form() const;
     std::size_t componentCount(const Channel& channel) const;
     std::string describe(const Channel& channel) const;

@@ -68,11 +68,11 @@ ConstraintTarget inSpaceOf(const ConstraintTarget& target, const AffineMatrix& r
     {
         // Shaders use the directions of x and of y across x, which follow matrices that scale, mirror or shear.
         const glm::dmat3 toPalette(rootMatrix.toColumns());
-        const glm::dvec4 rotation = Rotation::unit(glm::dvec4(target.rotation));
+        const glm::dquat rotation = Rotation::unitQuaternion(target.rotation);
         const glm::dvec3 x(1.0, 0.0, 0.0), y(0.0, 1.0, 0.0);
         const auto movedTo = [&](const glm::dvec3& axis)
-        { return AxisTurns::direction(toPalette * AxisTurns::turned(rotation, axis), axis); };
-        moved.rotation = glm::vec4(AxisTurns::framed(x, y, movedTo(x), movedTo(y)));
+        { return AxisTurns::direction(toPalette * (rotation * axis), axis); };
+        moved.rotation = Rotation::toFloats(AxisTurns::framed(x, y, movedTo(x), movedTo(y)));
     }
     // Shaders compute sines of small angles only.
     constexpr float wholeTurn = 6.28318531f;
@@ -226,8 +226,7 @@ void PoseBatch::setRootMatrix(const AffineMatrix& rootMatrix)
 
 bool PoseBatch::hasRootMatrix(const AffineMatrix& rootMatrix) const
 {
-    return _isRootCommon ? _rootMatrices.front().rows == rootMatrix.rows
-                         : _rootMatrices.empty() && rootMatrix.isIdentity();
+    return _isRootCommon ? _rootMatrices.front() == rootMatrix : _rootMatrices.empty() && rootMatrix.isIdentity();
 }
 
 std::size_t PoseBatch::add(const PoseInstruction& instruction, const AffineMatrix& rootMatrix)

@@ -50,11 +50,6 @@ glm::vec3 AffineMatrix::transformVector(const glm::vec3& vector) const
     return product(*this, glm::dvec4(glm::dvec3(vector), 0.0));
 }
 
-bool AffineMatrix::isIdentity() const
-{
-    return rows == AffineMatrix().rows;
-}
-
 bool AffineMatrix::isFinite() const
 {
     return areFinite(rows[0]) && areFinite(rows[1]) && areFinite(rows[2]);

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -14,15 +15,27 @@
 namespace osgGpuAnimation
 {
 
+/// The name itself, or that of what has one.
+template <typename T>
+const std::string& elementName(const T& named)
+{
+    if constexpr (std::is_same_v<T, std::string>)
+        return named;
+    else if constexpr (std::is_member_object_pointer_v<decltype(&T::name)>)
+        return named.name;
+    else
+        return named.name();
+}
+
 /// Lists names for an error message: "Walk", "Run". Of more than 50 names it lists the first 50 and the total; without
-/// names it is: none. nameOf: returns the name of a T.
-template <typename T, typename NameOf>
-std::string quotedNames(const std::vector<T>& named, NameOf nameOf)
+/// names it is: none.
+template <typename T>
+std::string quotedNames(const std::vector<T>& named)
 {
     constexpr std::size_t max = 50;
     std::string names;
     for (std::size_t i = 0; i < std::min(named.size(), max); ++i)
-        names += (i == 0 ? "\"" : ", \"") + nameOf(named[i]) + "\"";
+        names += (i == 0 ? "\"" : ", \"") + elementName(named[i]) + "\"";
     if (named.size() > max) names += ", … (" + std::to_string(named.size()) + " in all)";
     return names.empty() ? "none" : names;
 }
@@ -98,5 +111,15 @@ public:
 private:
     std::optional<Error> _error;
 };
+
+/// The index of the first element of that name. kind: of the elements, in the singular. Error: there is none; the
+/// message lists the existing names.
+template <typename T>
+Result<std::size_t> indexNamed(const std::string& kind, const std::string& name, const std::vector<T>& named)
+{
+    for (std::size_t i = 0; i < named.size(); ++i)
+        if (elementName(named[i]) == name) return i;
+    return Error{"there is no " + kind + " \"" + name + "\"; the " + kind + "s are " + quotedNames(named)};
+}
 
 } // namespace osgGpuAnimation

@@ -32,8 +32,20 @@ inline glm::dmat3 matrix(const glm::dvec4& q)
     return glm::mat3_cast(quaternion(q));
 }
 
+/// The same in the form that tracks have.
+inline glm::vec4 toFloats(const glm::dquat& q)
+{
+    return glm::vec4(numbers(q));
+}
+
 /// q / |q|; the identity if q has no direction (its length is 0 or not finite), so that no NaN results.
 glm::dvec4 unit(const glm::dvec4& q);
+
+/// The same of a track's rotation.
+inline glm::dquat unitQuaternion(const glm::vec4& q)
+{
+    return quaternion(unit(glm::dvec4(q)));
+}
 
 /// Spherical linear interpolation the short way (glTF 2.0, appendix C.4). If both ways have equal length (dot product
 /// 0: a turn of 180 degrees), the signs of a and b decide the direction.

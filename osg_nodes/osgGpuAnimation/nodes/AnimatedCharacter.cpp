@@ -171,7 +171,7 @@ Result<void> AnimatedCharacter::takeOff(const osg::Node* garment)
         for (const osg::ref_ptr<osg::Node>& child : _children)
             if (!Wardrobe::identifierOf(*child).empty()) worn.push_back(child->getName());
         return Error{"the character does not wear \"" + garment->getName() + "\"; the meshes of its garments are " +
-                     quotedNames(worn, [](const std::string& name) { return name; })};
+                     quotedNames(worn)};
     }
     for (unsigned int child = getNumChildren(); child-- > 0;)
         if (Wardrobe::identifierOf(*getChild(child)) == identifier) removeChild(child);

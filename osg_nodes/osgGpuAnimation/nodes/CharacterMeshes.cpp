@@ -90,8 +90,7 @@ Result<void> CharacterMeshes::setVariant(const std::string& name)
 {
     const std::vector<std::string> names = getVariants();
     if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end())
-        return Error{"there is no material variant \"" + name + "\"; the variants are " +
-                     quotedNames(names, [](const std::string& known) { return known; })};
+        return Error{"there is no material variant \"" + name + "\"; the variants are " + quotedNames(names)};
     _variant = name;
     change([&] { _variantMeshes->show(_node, name); });
     return {};

@@ -118,8 +118,7 @@ void JointAttachment::resolve(const Host& host)
     _hasWarned = true;
     OSG_WARN << "osgGpuAnimation: an attachment follows joint " << nameOfJoint(_jointName, _joint) << ", but \""
              << host.name() << "\" has none such; its " << host.set()->skeleton().jointCount() << " joints are "
-             << quotedNames(host.set()->skeleton().joints(), [](const Joint& joint) { return joint.name; })
-             << "; it stays at the character's origin" << std::endl;
+             << quotedNames(host.set()->skeleton().joints()) << "; it stays at the character's origin" << std::endl;
 }
 
 /// True if the matrix is the one in that host: cull would else evaluate the joint once more.

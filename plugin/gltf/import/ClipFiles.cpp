@@ -11,9 +11,8 @@
 #include "gltf/import/NodeTree.h"
 
 #include <osgGpuAnimation/animation/bounds/TransformBound.h>
-#include <osgGpuAnimation/authoring/retarget/ClipRetargeter.h>
 #include <osgGpuAnimation/authoring/retarget/JointNames.h>
-#include <osgGpuAnimation/authoring/retarget/RigNames.h>
+#include <osgGpuAnimation/authoring/retarget/RigMatch.h>
 #include <osgGpuAnimation/authoring/WithClipsOf.h>
 #include <osgGpuAnimation/nodes/properties/PropertyPointer.h>
 
@@ -133,9 +132,11 @@ std::vector<std::string> namesInSkins(const AnimationSet& set, const std::vector
     return chosen;
 }
 
-std::string namesText(const std::vector<std::string>& names)
+std::string namesText(std::vector<std::string> names)
 {
-    return quotedNames(names, [](const std::string& name) { return printable(name); });
+    for (std::string& name : names)
+        name = printable(name);
+    return quotedNames(names);
 }
 
 /// The joints of a skeleton by name, without namespaces.
@@ -282,7 +283,7 @@ std::vector<bool> nodesMovedBy(const std::vector<ClipFile>& files, const ClipJoi
     for (const ClipFile& file : files)
     {
         const Skeleton& skeleton = file.set->skeleton();
-        const std::vector<bool> isMoved = JointMoves::inAnyOf(skeleton, file.set->clips());
+        const std::vector<bool> isMoved = movedJoints(skeleton, file.set->clips());
         for (std::size_t joint = 0; joint < isMoved.size(); ++joint)
             if (isMoved[joint]) moved.insert(caselessJointName(skeleton.joint(joint).name));
         const std::vector<int> ofRole = RigNames::counterparts(namesIn(model.nodes), namesIn(skeleton.joints()));

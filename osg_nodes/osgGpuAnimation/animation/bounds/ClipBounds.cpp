@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/bounds/ClipBounds.h>
 
+#include <osgGpuAnimation/animation/keyframes/TrackBlend.h>
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/math/Rotation.h>
 
@@ -23,6 +24,15 @@ namespace
 constexpr auto length = [](const glm::dvec4& v) { return glm::length(v); };
 constexpr auto lengthOf3 = [](const glm::dvec4& v) { return glm::length(glm::dvec3(v)); };
 constexpr auto maxOf3 = [](const glm::dvec4& v) { return maxComponent(glm::dvec3(v)); };
+
+/// Upper bounds for a joint between two keyframes: the norms of its translation, scale and rotation matrix and of their
+/// first two derivatives over the interval [0, 1].
+struct TrackMotion
+{
+    double shift = 0.0, shift1 = 0.0, shift2 = 0.0; ///< translation
+    double size = 0.0, size1 = 0.0, size2 = 0.0;    ///< scale: of the largest component
+    double turn1 = 0.0, turn2 = 0.0;                ///< rotation matrix; infinite if a spline may pass through 0
+};
 
 /// A Hermite piece as a Bézier curve. The convex hull of its points contains the curve; the same is true of its
 /// derivatives.
@@ -124,30 +134,38 @@ double radiusOf(const TransformedBox& box)
     return radius;
 }
 
-} // namespace
-
-TrackMotion TrackMotion::between(const KeyframePair& keyframes, std::size_t track)
+/// Ignores the alpha of the keyframes.
+TrackMotion trackMotion(const KeyframePair& keyframes, std::size_t track)
 {
     if (keyframes.spline) return boundSpline(keyframes.first + 3 * track, keyframes.second + 3 * track);
     return boundLinear(keyframes.first[track], keyframes.second[track]);
 }
 
-ChainMotion ChainMotion::child(const TrackMotion& motion) const
+/// Upper bounds for a joint's transform to model space, v -> A v + c, from root to leaf by the product rule.
+struct ChainMotion
 {
-    const double turned = motion.size; // |R S| and its derivatives
-    const double turned1 = motion.turn1 * motion.size + motion.size1;
-    const double turned2 = motion.turn2 * motion.size + 2.0 * motion.turn1 * motion.size1 + motion.size2;
-    ChainMotion result;
-    result.linear = linear * turned;
-    result.linear1 = linear1 * turned + linear * turned1;
-    result.linear2 = linear2 * turned + 2.0 * linear1 * turned1 + linear * turned2;
-    result.origin = origin + linear * motion.shift;
-    result.origin2 = origin2 + linear2 * motion.shift + 2.0 * linear1 * motion.shift1 + linear * motion.shift2;
-    return result;
-}
+    double linear = 1.0, linear1 = 0.0, linear2 = 0.0; ///< A's operator norm and those of its derivatives
+    double origin = 0.0, origin2 = 0.0;                ///< |c| and |c''|
 
-namespace
-{
+    ChainMotion child(const TrackMotion& motion) const
+    {
+        const double turned = motion.size; // |R S| and its derivatives
+        const double turned1 = motion.turn1 * motion.size + motion.size1;
+        const double turned2 = motion.turn2 * motion.size + 2.0 * motion.turn1 * motion.size1 + motion.size2;
+        ChainMotion result;
+        result.linear = linear * turned;
+        result.linear1 = linear1 * turned + linear * turned1;
+        result.linear2 = linear2 * turned + 2.0 * linear1 * turned1 + linear * turned2;
+        result.origin = origin + linear * motion.shift;
+        result.origin2 = origin2 + linear2 * motion.shift + 2.0 * linear1 * motion.shift1 + linear * motion.shift2;
+        return result;
+    }
+
+    /// The largest distance from the root of a point within radius of the joint's origin.
+    double reach(double radius) const { return origin + linear * radius; }
+    /// The largest deviation of such a point from the straight line between its two ends: |p''| / 8.
+    double maxDeviation(double radius) const { return (origin2 + linear2 * radius) / 8.0; }
+};
 
 /// Moves the boxes of the palette entries through a clip and collects the space that they cover.
 ///
@@ -158,10 +176,47 @@ class ClipSweep
 {
 public:
     /// The set must outlive this object. entryBoxes: one box per palette entry.
-    ClipSweep(const AnimationSet& set, const EntryBoxes& entryBoxes);
+    ClipSweep(const AnimationSet& set, const EntryBoxes& entryBoxes)
+        : _set(set), _isNeeded(set.skeleton().jointCount(), false), _jointsToModel(set.skeleton().jointCount()),
+          _motions(set.skeleton().jointCount())
+    {
+        const std::size_t count = std::min(entryBoxes.size(), set.paletteSize());
+        for (std::size_t e = 0; e < count; ++e)
+        {
+            const PaletteEntry& entry = set.palette()[e];
+            if (entry.joint < 0 || entryBoxes[e].empty()) continue;
+            const TransformedBox box(entry.inverseBind, entryBoxes[e]);
+            _parts.push_back({static_cast<std::size_t>(entry.joint), box, radiusOf(box)});
+            _isNeeded[_parts.back().joint] = true;
+        }
+        for (std::size_t j = _isNeeded.size(); j-- > 0;)
+            if (_isNeeded[j] && set.skeleton().joint(j).parent >= 0) _isNeeded[set.skeleton().joint(j).parent] = true;
+        _boxes.resize(_parts.size());
+    }
 
-    Box restPose();
-    Box clip(const Clip& clip);
+    Box restPose()
+    {
+        _seen = Aabb3d();
+        const JointTransform* rest = _set.restPose().data();
+        sample({rest, rest, 0.0, false});
+        return _seen.toBox();
+    }
+
+    Box clip(const Clip& clip)
+    {
+        _seen = _swept = Aabb3d();
+        const bool spline = clip.form() == Clip::Form::Spline;
+        for (std::size_t k = 0; k < clip.keyframeCount(); ++k)
+        {
+            const JointTransform* keyframe = clip.data().data() + k * clip.keyframeStride();
+            _boxesBefore = _boxes;
+            sample({keyframe, keyframe, 0.0, spline});
+            if (k > 0 && clip.times()[k - 1] < clip.times()[k])
+                sweepPiece({keyframe - clip.keyframeStride(), keyframe, 0.0, spline});
+        }
+        _swept.add(_seen);
+        return _swept.toBox();
+    }
 
 private:
     struct Part
@@ -177,11 +232,82 @@ private:
         glm::dvec3 origin{0.0};
     };
 
-    void sample(const KeyframePair& keyframes);
-    void boundMotion(const KeyframePair& keyframes);
-    int stepsNeeded() const;
-    void addGrown(const std::vector<Aabb3d>& boxes, int steps);
-    void sweepPiece(KeyframePair keyframes);
+    void sample(const KeyframePair& keyframes)
+    {
+        const JointToModel model;
+        for (std::size_t j = 0; j < _jointsToModel.size(); ++j)
+        {
+            if (!_isNeeded[j]) continue;
+            const MixedTrack local = MixedTrack::between(keyframes, j, false);
+            glm::dmat3 linear = Rotation::matrix(local.rotation);
+            for (int axis = 0; axis < 3; ++axis)
+                linear[axis] *= local.scale[axis];
+            const int parent = _set.skeleton().joint(j).parent;
+            const JointToModel& above = parent < 0 ? model : _jointsToModel[parent];
+            _jointsToModel[j] = {above.linear * linear, above.linear * glm::dvec3(local.translation) + above.origin};
+        }
+        for (std::size_t p = 0; p < _parts.size(); ++p)
+        {
+            const JointToModel& jointToModel = _jointsToModel[_parts[p].joint];
+            _boxes[p] = _parts[p].box.bounds(jointToModel.linear, jointToModel.origin);
+            _seen.add(_boxes[p]);
+        }
+    }
+
+    void boundMotion(const KeyframePair& keyframes)
+    {
+        for (std::size_t j = 0; j < _motions.size(); ++j)
+        {
+            if (!_isNeeded[j]) continue;
+            const int parent = _set.skeleton().joint(j).parent;
+            const ChainMotion above = parent < 0 ? ChainMotion() : _motions[parent];
+            _motions[j] = above.child(trackMotion(keyframes, j));
+        }
+    }
+
+    int stepsNeeded() const
+    {
+        constexpr double maxSteps = 16.0;
+        const double allowed = 0.01 * _seen.diagonal();
+        double steps = 1.0;
+        for (std::size_t p = 0; p < _parts.size(); ++p)
+        {
+            const double maxDeviation = _motions[_parts[p].joint].maxDeviation(_parts[p].radius);
+            if (!(maxDeviation > allowed) || !std::isfinite(maxDeviation)) continue;
+            Aabb3d both = _boxes[p];
+            both.add(_boxesBefore[p]);
+            steps = std::max(steps, std::ceil(std::sqrt(maxDeviation / (allowed + _seen.slackAround(both)))));
+        }
+        return static_cast<int>(std::min(steps, maxSteps));
+    }
+
+    void addGrown(const std::vector<Aabb3d>& boxes, int steps)
+    {
+        for (std::size_t p = 0; p < boxes.size(); ++p)
+        {
+            const ChainMotion& motion = _motions[_parts[p].joint];
+            const double maxDeviation = motion.maxDeviation(_parts[p].radius) / (static_cast<double>(steps) * steps);
+            _swept.add(boxes[p].grownWithin(maxDeviation, motion.reach(_parts[p].radius)));
+        }
+    }
+
+    void sweepPiece(KeyframePair keyframes)
+    {
+        boundMotion(keyframes);
+        const int steps = stepsNeeded();
+        addGrown(_boxesBefore, steps);
+        addGrown(_boxes, steps);
+        if (steps == 1) return;
+
+        const std::vector<Aabb3d> boxesAfter = _boxes;
+        for (int step = 1; step < steps; ++step)
+        {
+            keyframes.alpha = static_cast<double>(step) / steps;
+            sample(keyframes);
+            addGrown(_boxes, steps);
+        }
+        _boxes = boxesAfter;
+    }
 
     const AnimationSet& _set;
     std::vector<Part> _parts;
@@ -193,125 +319,6 @@ private:
     Aabb3d _seen;                             ///< all samples
     Aabb3d _swept;                            ///< all samples and the space between them
 };
-
-ClipSweep::ClipSweep(const AnimationSet& set, const EntryBoxes& entryBoxes)
-    : _set(set), _isNeeded(set.skeleton().jointCount(), false), _jointsToModel(set.skeleton().jointCount()),
-      _motions(set.skeleton().jointCount())
-{
-    const std::size_t count = std::min(entryBoxes.size(), set.paletteSize());
-    for (std::size_t e = 0; e < count; ++e)
-    {
-        const PaletteEntry& entry = set.palette()[e];
-        if (entry.joint < 0 || entryBoxes[e].empty()) continue;
-        const TransformedBox box(entry.inverseBind, entryBoxes[e]);
-        _parts.push_back({static_cast<std::size_t>(entry.joint), box, radiusOf(box)});
-        _isNeeded[_parts.back().joint] = true;
-    }
-    for (std::size_t j = _isNeeded.size(); j-- > 0;)
-        if (_isNeeded[j] && set.skeleton().joint(j).parent >= 0) _isNeeded[set.skeleton().joint(j).parent] = true;
-    _boxes.resize(_parts.size());
-}
-
-void ClipSweep::sample(const KeyframePair& keyframes)
-{
-    const JointToModel model;
-    for (std::size_t j = 0; j < _jointsToModel.size(); ++j)
-    {
-        if (!_isNeeded[j]) continue;
-        const MixedTrack local = MixedTrack::between(keyframes, j, false);
-        glm::dmat3 linear = Rotation::matrix(local.rotation);
-        for (int axis = 0; axis < 3; ++axis)
-            linear[axis] *= local.scale[axis];
-        const int parent = _set.skeleton().joint(j).parent;
-        const JointToModel& above = parent < 0 ? model : _jointsToModel[parent];
-        _jointsToModel[j] = {above.linear * linear, above.linear * glm::dvec3(local.translation) + above.origin};
-    }
-    for (std::size_t p = 0; p < _parts.size(); ++p)
-    {
-        const JointToModel& jointToModel = _jointsToModel[_parts[p].joint];
-        _boxes[p] = _parts[p].box.bounds(jointToModel.linear, jointToModel.origin);
-        _seen.add(_boxes[p]);
-    }
-}
-
-void ClipSweep::boundMotion(const KeyframePair& keyframes)
-{
-    for (std::size_t j = 0; j < _motions.size(); ++j)
-    {
-        if (!_isNeeded[j]) continue;
-        const int parent = _set.skeleton().joint(j).parent;
-        const ChainMotion above = parent < 0 ? ChainMotion() : _motions[parent];
-        _motions[j] = above.child(TrackMotion::between(keyframes, j));
-    }
-}
-
-int ClipSweep::stepsNeeded() const
-{
-    constexpr double maxSteps = 16.0;
-    const double allowed = 0.01 * _seen.diagonal();
-    double steps = 1.0;
-    for (std::size_t p = 0; p < _parts.size(); ++p)
-    {
-        const double maxDeviation = _motions[_parts[p].joint].maxDeviation(_parts[p].radius);
-        if (!(maxDeviation > allowed) || !std::isfinite(maxDeviation)) continue;
-        Aabb3d both = _boxes[p];
-        both.add(_boxesBefore[p]);
-        steps = std::max(steps, std::ceil(std::sqrt(maxDeviation / (allowed + _seen.slackAround(both)))));
-    }
-    return static_cast<int>(std::min(steps, maxSteps));
-}
-
-void ClipSweep::addGrown(const std::vector<Aabb3d>& boxes, int steps)
-{
-    for (std::size_t p = 0; p < boxes.size(); ++p)
-    {
-        const ChainMotion& motion = _motions[_parts[p].joint];
-        const double maxDeviation = motion.maxDeviation(_parts[p].radius) / (static_cast<double>(steps) * steps);
-        _swept.add(boxes[p].grownWithin(maxDeviation, motion.reach(_parts[p].radius)));
-    }
-}
-
-void ClipSweep::sweepPiece(KeyframePair keyframes)
-{
-    boundMotion(keyframes);
-    const int steps = stepsNeeded();
-    addGrown(_boxesBefore, steps);
-    addGrown(_boxes, steps);
-    if (steps == 1) return;
-
-    const std::vector<Aabb3d> boxesAfter = _boxes;
-    for (int step = 1; step < steps; ++step)
-    {
-        keyframes.alpha = static_cast<double>(step) / steps;
-        sample(keyframes);
-        addGrown(_boxes, steps);
-    }
-    _boxes = boxesAfter;
-}
-
-Box ClipSweep::restPose()
-{
-    _seen = Aabb3d();
-    const JointTransform* rest = _set.restPose().data();
-    sample({rest, rest, 0.0, false});
-    return _seen.toBox();
-}
-
-Box ClipSweep::clip(const Clip& clip)
-{
-    _seen = _swept = Aabb3d();
-    const bool spline = clip.form() == Clip::Form::Spline;
-    for (std::size_t k = 0; k < clip.keyframeCount(); ++k)
-    {
-        const JointTransform* keyframe = clip.data().data() + k * clip.keyframeStride();
-        _boxesBefore = _boxes;
-        sample({keyframe, keyframe, 0.0, spline});
-        if (k > 0 && clip.times()[k - 1] < clip.times()[k])
-            sweepPiece({keyframe - clip.keyframeStride(), keyframe, 0.0, spline});
-    }
-    _swept.add(_seen);
-    return _swept.toBox();
-}
 
 } // namespace
 

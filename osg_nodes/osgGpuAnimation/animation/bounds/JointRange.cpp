@@ -198,12 +198,4 @@ std::vector<WeightRange> weightRanges(const AnimationSet& set, std::size_t morph
     return ranges;
 }
 
-float longestJoint(const AnimationSet& set)
-{
-    float longest = 0.0f;
-    for (const Joint& joint : set.skeleton().joints())
-        longest = std::max(longest, glm::length(glm::vec3(joint.rest.translation)));
-    return longest;
-}
-
 } // namespace osgGpuAnimation

@@ -59,9 +59,6 @@ struct PoseExtent
     double maxWeight = 0.0;
 };
 
-/// The largest length of a joint at rest.
-float longestJoint(const AnimationSet& set);
-
 /// The ranges of all joints over all times of a clip, between keyframes too. clip: null for the rest pose.
 std::vector<JointRange> rangesOfClip(const AnimationSet& set, const Clip* clip);
 

@@ -28,35 +28,33 @@ struct JointToModelBound
     glm::dvec3 origin{0.0}; ///< centre of the ball
     double radius = 0.0;    ///< of the ball
 
-    JointToModelBound child(const JointRange& range) const;
+    JointToModelBound child(const JointRange& range) const
+    {
+        JointToModelBound result;
+        const double distance = glm::length(range.translation) + range.shift;
+        const double directed = norm * range.shift + deviation * distance;
+        const double undirected = maxNorm * distance;
+        result.origin = directed <= undirected ? origin + linear * range.translation : origin;
+        result.radius = radius + std::min(directed, undirected);
+
+        // |R S - R0 S0| <= |R - R0| |S| + |S - S0|, and a turn by an angle moves a unit vector by 2 sin of its half.
+        const double size = maxComponent(glm::abs(range.scale) + range.stretch);
+        const double turned = range.turn < 1.5 ? 2.0 * std::sin(range.turn) : 2.0;
+        const double own = turned * size + range.stretch;
+        const double ownNorm = maxComponent(range.scale);
+        result.maxNorm = maxNorm * size;
+        result.linear = linear * Rotation::matrix(range.rotation);
+        for (int axis = 0; axis < 3; ++axis)
+            result.linear[axis] *= range.scale[axis];
+        result.norm = norm * ownNorm;
+        result.deviation = norm * own + deviation * (ownNorm + own);
+        if (result.deviation <= result.maxNorm) return result;
+        result.linear = glm::dmat3(0.0);
+        result.norm = 0.0;
+        result.deviation = result.maxNorm;
+        return result;
+    }
 };
-
-JointToModelBound JointToModelBound::child(const JointRange& range) const
-{
-    JointToModelBound result;
-    const double distance = glm::length(range.translation) + range.shift;
-    const double directed = norm * range.shift + deviation * distance;
-    const double undirected = maxNorm * distance;
-    result.origin = directed <= undirected ? origin + linear * range.translation : origin;
-    result.radius = radius + std::min(directed, undirected);
-
-    // |R S - R0 S0| <= |R - R0| |S| + |S - S0|, and a turn by an angle moves a unit vector by 2 sin of its half.
-    const double size = maxComponent(glm::abs(range.scale) + range.stretch);
-    const double turned = range.turn < 1.5 ? 2.0 * std::sin(range.turn) : 2.0;
-    const double own = turned * size + range.stretch;
-    const double ownNorm = maxComponent(range.scale);
-    result.maxNorm = maxNorm * size;
-    result.linear = linear * Rotation::matrix(range.rotation);
-    for (int axis = 0; axis < 3; ++axis)
-        result.linear[axis] *= range.scale[axis];
-    result.norm = norm * ownNorm;
-    result.deviation = norm * own + deviation * (ownNorm + own);
-    if (result.deviation <= result.maxNorm) return result;
-    result.linear = glm::dmat3(0.0);
-    result.norm = 0.0;
-    result.deviation = result.maxNorm;
-    return result;
-}
 
 /// The box of a palette entry after its joint's transform.
 Aabb3d transformed(const PaletteEntry& entry, const Box& entryBox, const JointToModelBound& bound)
@@ -75,11 +73,6 @@ MixBounds::MixBounds(const AnimationSet& set, Boxes boxes) : _set(set), _boxes(s
     for (const MorphWeights& morph : set.morphs())
         for (const float weight : morph.isProperty() ? std::vector<float>() : morph.defaults)
             _maxRestWeight = std::max(_maxRestWeight, std::abs(static_cast<double>(weight)));
-}
-
-MixBounds::MixBounds(const AnimationSet& set, const EntryBoxes& entryBoxes)
-    : MixBounds(set, {entryBoxes, entryBoxes, entryBoxes, std::vector<float>(entryBoxes.size())})
-{
 }
 
 MixBounds::~MixBounds() = default;

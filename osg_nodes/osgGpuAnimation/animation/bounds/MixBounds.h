@@ -41,8 +41,6 @@ public:
 
     /// The set must outlive this object.
     MixBounds(const AnimationSet& set, Boxes boxes);
-    /// The same without morph weights. entryBoxes: one box per palette entry.
-    MixBounds(const AnimationSet& set, const EntryBoxes& entryBoxes);
     ~MixBounds();
 
     /// The box in model space. Unknown clips count as the rest pose. constraints: those of the set with an effect, bit

@@ -5,7 +5,6 @@
 
 #include <glm/mat4x4.hpp>
 
-#include <cstddef>
 #include <string>
 #include <vector>
 

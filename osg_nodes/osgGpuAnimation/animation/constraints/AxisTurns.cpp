@@ -11,23 +11,18 @@ namespace osgGpuAnimation::AxisTurns
 namespace
 {
 
-glm::dvec3 axisOf(const glm::dvec4& q)
-{
-    return glm::dvec3(q);
-}
-
 /// The shortest turn between unit vectors at most a right angle apart.
-glm::dvec4 acute(const glm::dvec3& from, const glm::dvec3& to)
+glm::dquat acute(const glm::dvec3& from, const glm::dvec3& to)
 {
-    return glm::normalize(glm::dvec4(glm::cross(from, to), 1.0 + glm::dot(from, to)));
+    return glm::normalize(glm::dquat(1.0 + glm::dot(from, to), glm::cross(from, to)));
 }
 
 /// A turn from one unit vector to another: by way of half a turn about an axis perpendicular to `from`, if they are
 /// more than a right angle apart. Both parts are well-conditioned.
-glm::dvec4 arc(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& axis)
+glm::dquat arc(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& axis)
 {
     if (glm::dot(from, to) >= 0.0) return acute(from, to);
-    return product(acute(-from, to), glm::dvec4(axis, 0.0));
+    return acute(-from, to) * glm::dquat(0.0, axis);
 }
 
 bool isNone(const glm::dvec3& v)
@@ -36,22 +31,6 @@ bool isNone(const glm::dvec3& v)
 }
 
 } // namespace
-
-glm::dvec4 product(const glm::dvec4& a, const glm::dvec4& b)
-{
-    return {a.w * axisOf(b) + b.w * axisOf(a) + glm::cross(axisOf(a), axisOf(b)),
-            a.w * b.w - glm::dot(axisOf(a), axisOf(b))};
-}
-
-glm::dvec4 inverse(const glm::dvec4& q)
-{
-    return {-axisOf(q), q.w};
-}
-
-glm::dvec3 turned(const glm::dvec4& q, const glm::dvec3& v)
-{
-    return v + 2.0 * glm::cross(axisOf(q), glm::cross(axisOf(q), v) + q.w * v);
-}
 
 glm::dvec3 direction(const glm::dvec3& v, const glm::dvec3& fallback)
 {
@@ -72,40 +51,40 @@ glm::dvec3 anyAcross(const glm::dvec3& axis)
     return glm::normalize(glm::cross(axis, other));
 }
 
-glm::dvec4 about(const glm::dvec3& axis, double cosine, double sine)
+glm::dquat about(const glm::dvec3& axis, double cosine, double sine)
 {
-    return glm::normalize(cosine >= 0.0 ? glm::dvec4(axis * sine, 1.0 + cosine)
-                                        : glm::dvec4(axis * (1.0 - cosine), sine));
+    return glm::normalize(cosine >= 0.0 ? glm::dquat(1.0 + cosine, axis * sine)
+                                        : glm::dquat(sine, axis * (1.0 - cosine)));
 }
 
-glm::dvec4 shortest(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& fallback)
+glm::dquat shortest(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& fallback)
 {
     const glm::dvec3 axis = glm::cross(from, to);
     const double squared = glm::dot(axis, axis);
     return arc(from, to, squared > 1e-8 ? axis / std::sqrt(squared) : fallback);
 }
 
-glm::dvec4 framed(const glm::dvec3& from, const glm::dvec3& up, const glm::dvec3& to, const glm::dvec3& pole)
+glm::dquat framed(const glm::dvec3& from, const glm::dvec3& up, const glm::dvec3& to, const glm::dvec3& pole)
 {
     const glm::dvec3 upAcross = across(up, from), poleAcross = across(pole, to);
     if (isNone(upAcross) || isNone(poleAcross))
         return shortest(from, to, isNone(upAcross) ? anyAcross(from) : upAcross);
-    const glm::dvec4 turn = arc(from, to, upAcross);
-    const glm::dvec3 upTurned = turned(turn, upAcross);
-    return product(about(to, glm::dot(upTurned, poleAcross), glm::dot(glm::cross(upTurned, poleAcross), to)), turn);
+    const glm::dquat turn = arc(from, to, upAcross);
+    const glm::dvec3 upTurned = turn * upAcross;
+    return about(to, glm::dot(upTurned, poleAcross), glm::dot(glm::cross(upTurned, poleAcross), to)) * turn;
 }
 
-glm::dvec3 logarithm(glm::dvec4 q)
+glm::dvec3 logarithm(const glm::dquat& q)
 {
-    if (q.w < 0.0) q = -q;
-    const double sine = glm::length(axisOf(q));
-    return sine > 1e-12 ? axisOf(q) * (std::atan2(sine, q.w) / sine) : axisOf(q);
+    const glm::dvec3 axis = (q.w < 0.0 ? -1.0 : 1.0) * glm::dvec3(q.x, q.y, q.z);
+    const double sine = glm::length(axis);
+    return sine > 1e-12 ? axis * (std::atan2(sine, std::abs(q.w)) / sine) : axis;
 }
 
-glm::dvec4 exponential(const glm::dvec3& halfTurn)
+glm::dquat exponential(const glm::dvec3& halfTurn)
 {
     const double half = glm::length(halfTurn);
-    return {half > 1e-12 ? halfTurn * (std::sin(half) / half) : halfTurn, std::cos(half)};
+    return glm::dquat(std::cos(half), half > 1e-12 ? halfTurn * (std::sin(half) / half) : halfTurn);
 }
 
 } // namespace osgGpuAnimation::AxisTurns

@@ -1,23 +1,18 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <glm/mat4x4.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <glm/vec3.hpp>
-#include <glm/vec4.hpp>
 
 namespace osgGpuAnimation
 {
 
 /// Rotations between axes, for constraints: the double-precision twin of the first part of shaders/constrain.glsl.
-/// Quaternions are x, y, z, w, as in a JointTransform. No function returns a NaN for finite input.
+/// No function returns a NaN for finite input.
 namespace AxisTurns
 {
 
 constexpr double smallestSine = 1e-3; ///< axes that enclose a smaller angle count as parallel
-
-glm::dvec4 product(const glm::dvec4& a, const glm::dvec4& b); ///< turns by b first
-glm::dvec4 inverse(const glm::dvec4& q);                      ///< q: unit
-glm::dvec3 turned(const glm::dvec4& q, const glm::dvec3& v);  ///< q: unit
 
 /// v / |v|; the fallback if v has no direction.
 glm::dvec3 direction(const glm::dvec3& v, const glm::dvec3& fallback);
@@ -27,18 +22,18 @@ glm::dvec3 across(const glm::dvec3& v, const glm::dvec3& axis);
 glm::dvec3 anyAcross(const glm::dvec3& axis);
 
 /// The turn about a unit axis by an angle in (-pi, pi] with this cosine and sine.
-glm::dvec4 about(const glm::dvec3& axis, double cosine, double sine);
+glm::dquat about(const glm::dvec3& axis, double cosine, double sine);
 /// The shortest turn from one unit vector to another; half a turn about the fallback if they are opposite.
-glm::dvec4 shortest(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& fallback);
+glm::dquat shortest(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& fallback);
 /// The turn that moves a unit vector to another and the vector `up` to the side of `pole`: into the half plane of `to`
 /// and `pole`. It depends continuously on `to`, except near `pole`. Where `up` or `pole` is parallel to its vector, it
 /// is the shortest turn.
-glm::dvec4 framed(const glm::dvec3& from, const glm::dvec3& up, const glm::dvec3& to, const glm::dvec3& pole);
+glm::dquat framed(const glm::dvec3& from, const glm::dvec3& up, const glm::dvec3& to, const glm::dvec3& pole);
 
 /// Axis times half the angle of a unit quaternion, along the shorter arc.
-glm::dvec3 logarithm(glm::dvec4 q);
+glm::dvec3 logarithm(const glm::dquat& q);
 /// The inverse of logarithm().
-glm::dvec4 exponential(const glm::dvec3& halfTurn);
+glm::dquat exponential(const glm::dvec3& halfTurn);
 
 } // namespace AxisTurns
 } // namespace osgGpuAnimation

@@ -26,7 +26,7 @@ glm::vec3 turnedTowards(const ConstraintChain& chain, const ConstraintGoal& goal
     if (angle <= maxAngle) return goal.target.position;
     const glm::dvec3 side = across(chain.restUp, from);
     const glm::dvec3 halfTurn = logarithm(shortest(from, to, glm::dot(side, side) > 0.5 ? side : anyAcross(from)));
-    const glm::dvec3 line = turned(exponential(halfTurn * (maxAngle / angle)), from);
+    const glm::dvec3 line = exponential(halfTurn * (maxAngle / angle)) * from;
     return glm::vec3(chain.restEye + line * glm::length(wanted));
 }
 

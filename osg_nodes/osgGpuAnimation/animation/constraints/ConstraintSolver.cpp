@@ -4,7 +4,6 @@
 #include <osgGpuAnimation/animation/constraints/AxisTurns.h>
 #include <osgGpuAnimation/math/Rotation.h>
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 #include <glm/matrix.hpp>
@@ -28,12 +27,12 @@ constexpr double smallestShare = 1e-5; ///< of a length: what is shorter counts 
 struct Local
 {
     glm::dvec3 translation;
-    glm::dvec4 rotation;
+    glm::dquat rotation;
     glm::dvec3 scale;
 
     glm::dmat4 matrix() const
     {
-        glm::dmat4 m(Rotation::matrix(rotation));
+        glm::dmat4 m = glm::mat4_cast(rotation);
         for (int axis = 0; axis < 3; ++axis)
             m[axis] *= scale[axis];
         m[3] = glm::dvec4(translation, 1.0);
@@ -90,17 +89,16 @@ double foldOf(double halfAngle)
 }
 
 /// Turns the joints before the last by their shares of a turn.
-void share(const ConstraintChain& constraint, const glm::dvec4& turn, Chain& chain)
+void share(const ConstraintChain& constraint, const glm::dquat& turn, Chain& chain)
 {
     const glm::dvec3 halfTurn = logarithm(turn);
     const glm::dvec3 folded = halfTurn * foldOf(glm::length(halfTurn));
-    glm::dvec4 parent(0.0, 0.0, 0.0, 1.0); // orientation of the joint's parent
+    glm::dquat parent(1, 0, 0, 0); // orientation of the joint's parent
     for (std::size_t joint = 0; joint + 1 < chain.size(); ++joint)
     {
-        const glm::dvec4 part = exponential(folded * constraint.shares[joint]);
-        const glm::dvec4 inParent = product(inverse(parent), product(part, parent));
-        chain[joint].rotation = product(inParent, chain[joint].rotation);
-        parent = product(parent, chain[joint].rotation);
+        const glm::dquat part = exponential(folded * constraint.shares[joint]);
+        chain[joint].rotation = glm::conjugate(parent) * part * parent * chain[joint].rotation;
+        parent = parent * chain[joint].rotation;
     }
 }
 
@@ -117,11 +115,10 @@ bool aim(const ConstraintChain& constraint, const Goal& goal, Local& joint)
     const double along = glm::dot(offset, forward);
     const double squared = distance * distance - glm::dot(offset, offset) + along * along;
     const glm::dvec3 met = offset + forward * (std::sqrt(std::max(squared, 0.0)) - along);
-    const glm::dvec3 from = turned(joint.rotation, direction(met, forward));
-    const glm::dvec3 up = turned(joint.rotation, direction(joint.scale * constraint.up, constraint.up));
+    const glm::dvec3 from = joint.rotation * direction(met, forward);
+    const glm::dvec3 up = joint.rotation * direction(joint.scale * constraint.up, constraint.up);
     const glm::dvec3 to = line / distance;
-    const glm::dvec4 turn = product(exponential(to * (0.5 * goal.twist)), framed(from, up, to, goal.pole));
-    joint.rotation = product(turn, joint.rotation);
+    joint.rotation = exponential(to * (0.5 * goal.twist)) * framed(from, up, to, goal.pole) * joint.rotation;
     return true;
 }
 
@@ -189,34 +186,33 @@ bool solveTwoBone(const ConstraintChain& constraint, const Goal& goal, Chain& ch
         (length * length - reach * reach) * (reach * reach - difference * difference) / (twice * twice);
     const glm::dvec2 bent = glm::normalize(glm::dvec2(cosine, std::sqrt(std::max(squared - along * along, 0.0))));
     const glm::dvec2 before = glm::normalize(glm::dvec2(glm::dot(first, second), glm::dot(normal, axis)));
-    const glm::dvec4 bend = about(axis, bent.x * before.x + bent.y * before.y, bent.y * before.x - bent.x * before.y);
+    const glm::dquat bend = about(axis, bent.x * before.x + bent.y * before.y, bent.y * before.x - bent.x * before.y);
 
     // The start joint turns the end to the goal and the mid joint to the side of the pole.
-    const glm::dvec3 chord = first * upper + turned(bend, second) * lower;
+    const glm::dvec3 chord = first * upper + bend * second * lower;
     const glm::dvec3 from = glm::length(chord) > smallestShare * length ? glm::normalize(chord) : first;
     const glm::dvec3 to = distance > smallestShare * length ? line / distance : from;
-    glm::dvec4 turn =
+    const glm::dquat turn =
         goal.pole == glm::dvec3(0.0) ? shortest(from, to, axis) : framed(from, glm::cross(from, axis), to, goal.pole);
-    turn = product(exponential(to * (0.5 * goal.twist)), turn);
 
-    glm::dvec4 parent(0.0, 0.0, 0.0, 1.0); // orientation of the mid joint's parent
+    glm::dquat parent(1, 0, 0, 0); // orientation of the mid joint's parent
     for (std::size_t joint = 0; joint < constraint.mid; ++joint)
-        parent = product(parent, chain[joint].rotation);
+        parent = parent * chain[joint].rotation;
     Local& bends = chain[constraint.mid];
-    bends.rotation = product(product(inverse(parent), product(bend, parent)), bends.rotation);
-    chain.front().rotation = product(turn, chain.front().rotation);
+    bends.rotation = glm::conjugate(parent) * bend * parent * bends.rotation;
+    chain.front().rotation = exponential(to * (0.5 * goal.twist)) * turn * chain.front().rotation;
     return true;
 }
 
 /// Gives the end joint a rotation in model space.
-void orient(const glm::dvec4& rotation, const glm::dmat3& modelToParent, Chain& chain)
+void orient(const glm::dquat& rotation, const glm::dmat3& modelToParent, Chain& chain)
 {
     const glm::dmat3 parent(productOf(chain, chain.size() - 1));
     if (!hasInverse(glm::dmat4(parent))) return;
     const glm::dmat3 toParent = glm::inverse(parent) * modelToParent;
     const glm::dvec3 x(1.0, 0.0, 0.0), y(0.0, 1.0, 0.0);
     chain.back().rotation =
-        framed(x, y, direction(toParent * turned(rotation, x), x), direction(toParent * turned(rotation, y), y));
+        framed(x, y, direction(toParent * (rotation * x), x), direction(toParent * (rotation * y), y));
 }
 
 } // namespace
@@ -229,18 +225,18 @@ void solveConstraint(const ConstraintChain& constraint, const ConstraintTarget& 
     Chain chain;
     for (const JointTransform& joint : joints)
         chain.push_back(
-            {glm::dvec3(joint.translation), Rotation::unit(glm::dvec4(joint.rotation)), glm::dvec3(joint.scale)});
+            {glm::dvec3(joint.translation), Rotation::unitQuaternion(joint.rotation), glm::dvec3(joint.scale)});
     const Goal goal{glm::dvec3(modelToParent * glm::dvec4(glm::dvec3(target.position), 1.0)),
                     glm::dmat3(modelToParent) * glm::dvec3(target.pole), static_cast<double>(target.twist)};
     const bool isSolved =
         constraint.isLookAt ? solveLookAt(constraint, goal, chain) : solveTwoBone(constraint, goal, chain);
     if (!isSolved) return;
     if (!constraint.isLookAt && target.rotation != glm::vec4(0.0f))
-        orient(Rotation::unit(glm::dvec4(target.rotation)), glm::dmat3(modelToParent), chain);
+        orient(Rotation::unitQuaternion(target.rotation), glm::dmat3(modelToParent), chain);
     const double weight = std::min(static_cast<double>(target.weight), 1.0);
     for (std::size_t joint = 0; joint < joints.size(); ++joint)
-        joints[joint].rotation =
-            glm::vec4(Rotation::slerp(glm::dvec4(joints[joint].rotation), chain[joint].rotation, weight));
+        joints[joint].rotation = glm::vec4(
+            Rotation::slerp(glm::dvec4(joints[joint].rotation), Rotation::numbers(chain[joint].rotation), weight));
 }
 
 } // namespace osgGpuAnimation

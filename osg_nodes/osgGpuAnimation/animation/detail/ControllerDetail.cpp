@@ -17,7 +17,7 @@ bool ControllerDetail::isPlainLoop(const AnimationController& controller)
     const bool isDefault = settings.mode == AnimationLayer::Mode::Override &&
                            settings.reference == AnimationLayer::Reference::RestPose && settings.blendPriority == 0 &&
                            settings.loopMode == LoopMode::Loop && settings.parameter == glm::dvec2(0.0) &&
-                           !settings.isPhaseShared && !layer._mask && !layer._posed;
+                           !settings.isPhaseShared && !layer._mask && !layer._pose;
     if (!isDefault || !layer._weight.isFinished() || layer._weight.value() != 1.0) return false;
     const ClipPlayback& playback = layer.playback();
     if (layer._mixer.isEmpty()) return layer._state == PlayState::Stopped;

@@ -34,10 +34,7 @@ struct ControllerDetail
     /// The number of the layer's mask in its set, 0: none.
     static std::uint32_t maskNumber(const AnimationLayer& layer) { return layer._mask ? layer._mask->number : 0; }
     /// Null before the first AnimationLayer::pose().
-    static const JointPose* poseOf(const AnimationLayer& layer)
-    {
-        return layer._posed ? layer._posed->pose.get() : nullptr;
-    }
+    static const JointPose* poseOf(const AnimationLayer& layer) { return layer._pose.get(); }
 };
 
 } // namespace osgGpuAnimation

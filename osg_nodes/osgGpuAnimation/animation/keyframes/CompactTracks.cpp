@@ -301,47 +301,4 @@ void CompactTracks::unpack(std::vector<JointTransform>& data, std::size_t trackC
     }
 }
 
-bool PartKeys::move() const
-{
-    for (std::size_t k = 1; k < count; ++k)
-        if ((*this)[k] != (*this)[0]) return true;
-    return false;
-}
-
-void PartKeys::range(glm::vec3& outMin, glm::vec3& outMax) const
-{
-    outMin = outMax = glm::vec3((*this)[0]);
-    for (std::size_t k = 1; k < count; ++k)
-    {
-        outMin = glm::min(outMin, glm::vec3((*this)[k]));
-        outMax = glm::max(outMax, glm::vec3((*this)[k]));
-    }
-}
-
-void PartKeys::range(std::uint32_t place, glm::vec3& outMin, glm::vec3& outMax) const
-{
-    outMin = glm::vec3(1.0f);
-    outMax = glm::vec3(-1.0f);
-    for (std::size_t k = 0; k < count; ++k)
-    {
-        std::uint32_t omitted = place;
-        const glm::vec3 components = CompactTracks::componentsOf((*this)[k], omitted);
-        outMin = glm::min(outMin, components);
-        outMax = glm::max(outMax, components);
-    }
-}
-
-std::uint32_t PartKeys::omittedPlace() const
-{
-    // An omitted component of 0.3 makes errors of the others up to three times larger: worth two bits per keyframe.
-    constexpr double min = 0.3;
-    glm::dvec4 smallest(1.0);
-    for (std::size_t k = 0; k < count; ++k)
-        smallest = glm::min(smallest, glm::abs(Rotation::unit(glm::dvec4((*this)[k]))));
-    int best = 3;
-    for (int i = 0; i < 3; ++i)
-        if (smallest[i] > smallest[best]) best = i;
-    return smallest[best] >= min ? static_cast<std::uint32_t>(best) : CompactTracks::maxPlace;
-}
-
 } // namespace osgGpuAnimation

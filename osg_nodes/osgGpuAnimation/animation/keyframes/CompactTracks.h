@@ -85,21 +85,4 @@ private:
     bool placeParts();
 };
 
-/// The values of one part of a joint in interleaved keyframes.
-struct PartKeys
-{
-    const JointTransform* first;
-    std::size_t stride;
-    std::size_t count;
-    glm::vec4 JointTransform::*part;
-
-    const glm::vec4& operator[](std::size_t keyframe) const { return first[keyframe * stride].*part; }
-    bool move() const;
-    /// The range of the values; of the components without the one at `place` for rotations.
-    void range(glm::vec3& outMin, glm::vec3& outMax) const;
-    void range(std::uint32_t place, glm::vec3& outMin, glm::vec3& outMax) const;
-    /// The place for RotationPart: that of a component which is never small, else maxPlace.
-    std::uint32_t omittedPlace() const;
-};
-
 } // namespace osgGpuAnimation

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace osgGpuAnimation
 {
@@ -26,12 +27,14 @@ glm::dvec3 originOf(const AffineMatrix& matrix)
     return {matrix.rows[0].w, matrix.rows[1].w, matrix.rows[2].w};
 }
 
+bool isLower(const glm::dvec3& a, const glm::dvec3& b)
+{
+    return a.y < b.y;
+}
+
 double lowestOf(const FootPaths::Path& path)
 {
-    double lowest = path.front().y;
-    for (const glm::dvec3& place : path)
-        lowest = std::min(lowest, place.y);
-    return lowest;
+    return std::min_element(path.begin(), path.end(), isLower)->y;
 }
 
 /// Joints that move vertices, as far as the set knows; all, if it knows none.
@@ -85,22 +88,16 @@ FootPaths::FootPaths(const AnimationSet& set, std::vector<double> times,
         for (std::size_t i = 0; i < _paths.size(); ++i)
             _paths[i].push_back(originOf(jointToModel[joints.empty() ? i : joints[i]]));
         if (sample > 0 || all == 0) continue;
-        double lowest = HUGE_VAL, highest = -HUGE_VAL;
-        for (const AffineMatrix& matrix : jointToModel)
-        {
-            lowest = std::min(lowest, originOf(matrix).y);
-            highest = std::max(highest, originOf(matrix).y);
-        }
-        _height = highest - lowest;
+        Path origins;
+        std::transform(jointToModel.begin(), jointToModel.end(), std::back_inserter(origins), originOf);
+        _height = lift(origins);
     }
 }
 
 double FootPaths::lift(const Path& path) const
 {
-    double highest = path.front().y;
-    for (const glm::dvec3& place : path)
-        highest = std::max(highest, place.y);
-    return highest - lowestOf(path);
+    const auto [lowest, highest] = std::minmax_element(path.begin(), path.end(), isLower);
+    return highest->y - lowest->y;
 }
 
 /// True if the path ends where it begins.

@@ -60,30 +60,27 @@ void PlaybackStepEvents::enterStretch(double from, bool includesFrom)
     _markersLeft = last > first ? last - first : 0;
 }
 
-void PlaybackStepEvents::setEvent(AnimationEvent::Type type, double time)
+void PlaybackStepEvents::set(AnimationEvent& out, AnimationEvent::Type type, double time) const
 {
-    _type = type;
+    out.type = type;
     const double whole = std::abs(_step.distance);
-    _moment = whole > 0.0 ? std::min((_secondsBefore + std::abs(time - _stretchFrom)) / whole, 1.0) : 1.0;
+    out.moment = whole > 0.0 ? std::min((_secondsBefore + std::abs(time - _stretchFrom)) / whole, 1.0) : 1.0;
 }
 
-bool PlaybackStepEvents::nextMarker()
+bool PlaybackStepEvents::next(AnimationEvent& out)
 {
-    if (_markersLeft == 0) return false;
-    --_markersLeft;
-    _marker = &_clip.markers()[_isAscending ? _markerIndex++ : --_markerIndex];
-    setEvent(AnimationEvent::Type::Marker, _marker->time);
-    return true;
-}
-
-bool PlaybackStepEvents::next()
-{
-    if (nextMarker()) return true;
-    _marker = nullptr;
+    out.marker = nullptr;
+    if (_markersLeft > 0)
+    {
+        --_markersLeft;
+        out.marker = &_clip.markers()[_isAscending ? _markerIndex++ : --_markerIndex];
+        set(out, AnimationEvent::Type::Marker, out.marker->time);
+        return true;
+    }
     if (_crossingsLeft > 0.0)
     {
         _crossingsLeft -= 1.0;
-        setEvent(AnimationEvent::Type::Looped, _stretchTo);
+        set(out, AnimationEvent::Type::Looped, _stretchTo);
         _secondsBefore += std::abs(_stretchTo - _stretchFrom);
         const bool isTurn = _loopMode == LoopMode::PingPong;
         if (isTurn) _isAscending = !_isAscending;
@@ -93,7 +90,7 @@ bool PlaybackStepEvents::next()
     }
     if (_isFinishListed) return false;
     _isFinishListed = true;
-    setEvent(AnimationEvent::Type::Finished, _step.to);
+    set(out, AnimationEvent::Type::Finished, _step.to);
     return true;
 }
 
@@ -143,11 +140,8 @@ bool FrameEvents::goToNext(Source& source)
     if (!source.events) return false;
     do
     {
-        if (!source.events->next()) return false;
-    } while (source.isFadingOut && source.events->type() != AnimationEvent::Type::Marker);
-    source.event.type = source.events->type();
-    source.event.marker = source.events->marker();
-    source.event.moment = source.events->moment();
+        if (!source.events->next(source.event)) return false;
+    } while (source.isFadingOut && source.event.type != AnimationEvent::Type::Marker);
     return true;
 }
 

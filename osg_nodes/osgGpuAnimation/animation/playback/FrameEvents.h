@@ -16,8 +16,8 @@ namespace osgGpuAnimation
 /// Lists the events of one step through a clip in the order in which they happened: passed markers, jumps and turns at
 /// the ends, and the finish. Does not allocate.
 ///
-///     for (PlaybackStepEvents events(clip, step, LoopMode::Loop); events.next();)
-///         use(events.type(), events.marker(), events.moment());
+///     for (PlaybackStepEvents events(clip, step, LoopMode::Loop); events.next(event);)
+///         use(event);
 ///
 /// A step includes its last moment but not its first one (unless no earlier step included that), so consecutive steps
 /// list each marker once. A Loop jump lists the markers at the one end, Looped, then the markers at the other end. A
@@ -31,17 +31,12 @@ public:
     /// The clip must outlive this.
     PlaybackStepEvents(const Clip& clip, const PlaybackStep& step, LoopMode loopMode);
 
-    /// Goes to the next event; false after the last one.
-    bool next();
-
-    AnimationEvent::Type type() const { return _type; }
-    const ClipMarker* marker() const { return _marker; }
-    double moment() const { return _moment; } ///< share of the step, in [0, 1]
+    /// Sets the type, marker and moment of the next event; false after the last one.
+    bool next(AnimationEvent& out);
 
 private:
     void enterStretch(double from, bool includesFrom);
-    bool nextMarker();
-    void setEvent(AnimationEvent::Type type, double time);
+    void set(AnimationEvent& out, AnimationEvent::Type type, double time) const;
 
     const Clip& _clip;
     PlaybackStep _step;
@@ -53,9 +48,6 @@ private:
     std::size_t _markersLeft = 0;
     std::size_t _markerIndex = 0;
     bool _isFinishListed = false;
-    AnimationEvent::Type _type = AnimationEvent::Type::Marker;
-    const ClipMarker* _marker = nullptr;
-    double _moment = 0.0;
 };
 
 /// The last step of one layer.

@@ -2,7 +2,6 @@
 #include <osgGpuAnimation/authoring/retarget/RigMatch.h>
 
 #include <osgGpuAnimation/authoring/retarget/JointNames.h>
-#include <osgGpuAnimation/authoring/retarget/RigNames.h>
 #include <osgGpuAnimation/math/Rotation.h>
 
 #include <glm/geometric.hpp>
@@ -52,9 +51,9 @@ bool isFirstFrame(const Clip& clip, const Skeleton& skeleton, const std::vector<
     bool anyTurns = false;
     for (const JointMatch* match : joints)
     {
-        const glm::dquat rest = RestPose::unitOf(skeleton.joint(match->source).rest.rotation);
+        const glm::dquat rest = Rotation::unitQuaternion(skeleton.joint(match->source).rest.rotation);
         const auto isAtRest = [&](std::size_t keyframe)
-        { return isNear(RestPose::unitOf(clip.at(keyframe, match->source)->rotation), rest); };
+        { return isNear(Rotation::unitQuaternion(clip.at(keyframe, match->source)->rotation), rest); };
         if (!isAtRest(0)) return false;
         bool turns = false;
         for (std::size_t k = 1; k < clip.keyframeCount() && !turns; ++k)
@@ -100,7 +99,7 @@ void JointPlaces::add(const Joint& joint, const JointTransform& transform)
 {
     const glm::dmat4 local = transform.toMatrix().toColumns();
     jointToModel.push_back(joint.parent < 0 ? local : jointToModel[joint.parent] * local);
-    rotations.push_back(rotationOf(joint.parent) * RestPose::unitOf(transform.rotation));
+    rotations.push_back(rotationOf(joint.parent) * Rotation::unitQuaternion(transform.rotation));
 }
 
 glm::dquat JointPlaces::rotationOf(int joint) const
@@ -123,19 +122,6 @@ glm::dvec3 JointPlaces::restOriginOf(std::size_t joint, int ancestor, const Join
 namespace RestPose
 {
 
-glm::dquat unitOf(const glm::vec4& rotation)
-{
-    return Rotation::quaternion(Rotation::unit(glm::dvec4(rotation)));
-}
-
-double longestJoint(const Skeleton& skeleton)
-{
-    double longest = 0.0;
-    for (const Joint& joint : skeleton.joints())
-        longest = std::max(longest, glm::length(glm::dvec3(joint.rest.translation)));
-    return longest;
-}
-
 bool areAlike(const glm::dquat& a, const glm::dquat& b)
 {
     return std::abs(glm::dot(a, b)) > 1.0 - tolerance * tolerance;
@@ -147,6 +133,27 @@ bool areAlike(const glm::vec4& a, const glm::vec4& b, double max)
 }
 
 } // namespace RestPose
+
+std::vector<bool> movedJoints(const Skeleton& skeleton, const std::vector<Clip>& clips)
+{
+    const double nearby = RestPose::tolerance * static_cast<double>(longestJoint(skeleton));
+    const auto isLike = [&](const JointTransform& a, const JointTransform& b, bool isTangent)
+    {
+        const bool isTurnedAlike =
+            isTangent ? glm::length(glm::dvec4(a.rotation)) <= RestPose::tolerance
+                      : RestPose::areAlike(Rotation::unitQuaternion(a.rotation), Rotation::unitQuaternion(b.rotation));
+        return isTurnedAlike && RestPose::areAlike(a.translation, b.translation, nearby) &&
+               RestPose::areAlike(a.scale, b.scale, RestPose::tolerance);
+    };
+    std::vector<bool> isMoved(skeleton.jointCount(), false);
+    for (const Clip& clip : clips)
+        for (std::size_t k = 0; k < clip.keyframeCount(); ++k)
+            for (std::size_t joint = 0; joint < isMoved.size(); ++joint)
+                for (std::size_t part = 0; part < clip.transformsPerTrack() && !isMoved[joint]; ++part)
+                    isMoved[joint] =
+                        !isLike(clip.at(k, joint)[part], part == 0 ? skeleton.joint(joint).rest : noTangent, part != 0);
+    return isMoved;
+}
 
 RigMatch::RigMatch(const Rig& from, const Rig& to, const RetargetOptions& options)
     : _fromRest(from.skeleton), _toRest(to.skeleton),
@@ -174,16 +181,15 @@ Result<RigMatch> RigMatch::create(const Rig& from, const Rig& to, const Retarget
     RigMatch match(from, to, options);
     const auto isNone = [](int counterpart) { return counterpart < 0; };
     const std::vector<int>&joints = match._jointCounterparts, &morphs = match._morphCounterparts;
-    const auto nameOf = [](const Joint& joint) { return joint.name; };
     if (std::all_of(joints.begin(), joints.end(), isNone) && std::all_of(morphs.begin(), morphs.end(), isNone))
-        return Error{"no joint has a counterpart: the joints are " + quotedNames(to.skeleton.joints(), nameOf) +
-                     "; those of the clips are " + quotedNames(from.skeleton.joints(), nameOf)};
+        return Error{"no joint has a counterpart: the joints are " + quotedNames(to.skeleton.joints()) +
+                     "; those of the clips are " + quotedNames(from.skeleton.joints())};
     match.addMatches(from, to);
     match.markSameRigs(from, to);
     match.findHips(to.skeleton, options.hips);
     if (!options.hips.empty() && std::find(match._areHips.begin(), match._areHips.end(), true) == match._areHips.end())
         return Error{"the hips \"" + options.hips + "\" are no joint with a counterpart; the joints are " +
-                     quotedNames(to.skeleton.joints(), nameOf)};
+                     quotedNames(to.skeleton.joints())};
     match.findBodies(to.skeleton);
     match.markBodies(to.skeleton);
     match.markByName(from, to, options.match);
@@ -221,7 +227,7 @@ void RigMatch::markSameRigs(const Rig& from, const Rig& to)
         if (topOf.back() < 0 && _jointCounterparts[joint] >= 0) topOf.back() = static_cast<int>(joint);
     }
     std::vector<bool> isSame(_jointCounterparts.size(), true); // by top
-    const double nearby = RestPose::tolerance * RestPose::longestJoint(to.skeleton);
+    const double nearby = RestPose::tolerance * static_cast<double>(longestJoint(to.skeleton));
     for (const JointMatch& match : _matches)
     {
         const Joint& own = to.skeleton.joint(match.joint);
@@ -229,10 +235,10 @@ void RigMatch::markSameRigs(const Rig& from, const Rig& to)
         const auto top = static_cast<std::size_t>(topOf[match.joint]);
         const bool isChildInBoth =
             own.parent >= 0 && other.parent >= 0 && _jointCounterparts[own.parent] == other.parent;
-        const bool isRestAlike =
-            RestPose::areAlike(RestPose::unitOf(own.rest.rotation), RestPose::unitOf(other.rest.rotation)) &&
-            RestPose::areAlike(own.rest.translation, other.rest.translation, nearby) &&
-            RestPose::areAlike(own.rest.scale, other.rest.scale, RestPose::tolerance);
+        const bool isRestAlike = RestPose::areAlike(Rotation::unitQuaternion(own.rest.rotation),
+                                                    Rotation::unitQuaternion(other.rest.rotation)) &&
+                                 RestPose::areAlike(own.rest.translation, other.rest.translation, nearby) &&
+                                 RestPose::areAlike(own.rest.scale, other.rest.scale, RestPose::tolerance);
         if (!isRestAlike || !(top == match.joint || isChildInBoth)) isSame[top] = false;
     }
     for (JointMatch& match : _matches)
@@ -243,7 +249,7 @@ void RigMatch::markSameRigs(const Rig& from, const Rig& to)
 /// anywhere.
 bool RigMatch::hasSameBones(const Rig& from, const Rig& to) const
 {
-    const double nearby = boneTolerance * RestPose::longestJoint(to.skeleton);
+    const double nearby = boneTolerance * static_cast<double>(longestJoint(to.skeleton));
     return std::all_of(_matches.begin(), _matches.end(),
                        [&](const JointMatch& match)
                        {
@@ -260,8 +266,8 @@ std::vector<const JointMatch*> RigMatch::otherRests(const Rig& from, const Rig& 
 {
     std::vector<const JointMatch*> others;
     for (const JointMatch& match : _matches)
-        if (!isNear(RestPose::unitOf(to.skeleton.joint(match.joint).rest.rotation),
-                    RestPose::unitOf(from.skeleton.joint(match.source).rest.rotation)))
+        if (!isNear(Rotation::unitQuaternion(to.skeleton.joint(match.joint).rest.rotation),
+                    Rotation::unitQuaternion(from.skeleton.joint(match.source).rest.rotation)))
             others.push_back(&match);
     return others;
 }

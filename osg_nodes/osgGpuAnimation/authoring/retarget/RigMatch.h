@@ -54,13 +54,14 @@ namespace RestPose
 
 constexpr double tolerance = 1e-6; ///< radians, or a share
 
-glm::dquat unitOf(const glm::vec4& rotation);
-double longestJoint(const Skeleton& skeleton);           ///< the length of the longest rest translation
 bool areAlike(const glm::dquat& a, const glm::dquat& b); ///< the same rotation
 /// The distance of xyz is at most `most`.
 bool areAlike(const glm::vec4& a, const glm::vec4& b, double max);
 
 } // namespace RestPose
+
+/// One per joint of the skeleton: true if any of the clips moves it away from its rest pose, apart from rounding.
+std::vector<bool> movedJoints(const Skeleton& skeleton, const std::vector<Clip>& clips);
 
 /// A joint of the rig `to` with its counterpart.
 struct JointMatch

@@ -1,18 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/math/detail/RegularFile.h>
-#include <osgGpuAnimation/math/detail/System.h>
 
 #include <utility>
 
 namespace osgGpuAnimation
 {
-
-Result<RegularFile> RegularFile::open(const std::string& path)
-{
-    const Result<system::File> file = system::openRegularFile(path);
-    if (!file) return file.error();
-    return RegularFile(file.value().handle, static_cast<std::size_t>(file.value().size));
-}
 
 Result<std::string> RegularFile::readWhole(const std::string& path, std::uint64_t maxBytes)
 {
@@ -21,19 +13,8 @@ Result<std::string> RegularFile::readWhole(const std::string& path, std::uint64_
     return file.value().readWhole(maxBytes);
 }
 
-RegularFile::RegularFile(RegularFile&& other) noexcept
-    : _handle(std::exchange(other._handle, system::File::none)), _size(other._size)
+RegularFile::RegularFile(RegularFile&& other) noexcept : _handle(std::exchange(other._handle, none)), _size(other._size)
 {
-}
-
-RegularFile::~RegularFile()
-{
-    if (_handle != system::File::none) system::closeFile(_handle);
-}
-
-bool RegularFile::isSameAs(const std::string& path) const
-{
-    return system::isSameFile(_handle, path);
 }
 
 Result<std::size_t> RegularFile::read(void* to, std::size_t bytes) const
@@ -41,7 +22,7 @@ Result<std::size_t> RegularFile::read(void* to, std::size_t bytes) const
     std::size_t done = 0;
     while (done < bytes)
     {
-        const Result<std::size_t> count = system::readFile(_handle, done, static_cast<char*>(to) + done, bytes - done);
+        const Result<std::size_t> count = readSome(done, static_cast<char*>(to) + done, bytes - done);
         if (!count) return count.error();
         if (count.value() == 0)
             return Error{"expected " + std::to_string(bytes) + " bytes, found " + std::to_string(done)};

@@ -11,11 +11,11 @@ namespace osgGpuAnimation
 {
 
 /// A regular file opened for reading. Folders, pipes and devices are refused: reading them may block or never end.
-/// Errors do not name the file.
+/// Errors do not name the file. posix/System.cpp and windows/System.cpp implement what systems do otherwise.
 class RegularFile
 {
 public:
-    static Result<RegularFile> open(const std::string& path);
+    static Result<RegularFile> open(const std::string& path); ///< without an effect on what it refuses
     /// All of a file of at most maxBytes bytes. Errors: open()'s and readWhole()'s.
     static Result<std::string> readWhole(const std::string& path, std::uint64_t maxBytes);
 
@@ -32,9 +32,14 @@ public:
     Result<std::string> readWhole(std::uint64_t maxBytes) const;
 
 private:
+    static constexpr std::intptr_t none = -1;
+
     RegularFile(std::intptr_t handle, std::size_t size) : _handle(handle), _size(size) {}
 
-    std::intptr_t _handle; ///< of system::File
+    /// Reads bytes from that place of the file. Returns their number, 0: the end.
+    Result<std::size_t> readSome(std::uint64_t from, void* to, std::size_t bytes) const;
+
+    std::intptr_t _handle; ///< or none
     std::size_t _size;
 };
 

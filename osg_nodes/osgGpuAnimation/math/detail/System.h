@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/math/Result.h>
-
 #include <cstddef>
-#include <cstdint>
 #include <cstdio>
 #include <string>
 
 /// What C++17 does not offer, with one implementation a system, in posix/ and windows/, and what
-/// systems do otherwise. Errors do not name the file.
+/// systems do otherwise.
 namespace osgGpuAnimation::system
 {
 
@@ -24,23 +21,6 @@ constexpr std::size_t stackBytes = std::size_t(isWindows ? 1 : 8) << 20;
 
 /// True: at the end of a process the system ends all other threads before it destroys static objects of libraries.
 constexpr bool threadsEndBeforeLibraries = isWindows;
-
-/// An open file; the user closes it.
-struct File
-{
-    static constexpr std::intptr_t none = -1;
-
-    std::intptr_t handle = none;
-    std::uint64_t size = 0; ///< bytes, when it was opened
-};
-
-/// Opens a regular file for reading. Folders, pipes and devices are refused without an effect on them.
-Result<File> openRegularFile(const std::string& path);
-void closeFile(std::intptr_t handle);
-bool isSameFile(std::intptr_t handle, const std::string& path);
-
-/// Reads bytes from that place of the file. Returns their number, 0: the end.
-Result<std::size_t> readFile(std::intptr_t handle, std::uint64_t from, void* to, std::size_t bytes);
 
 /// Creates a file for writing; null, with an error in errno (EEXIST: the path exists, as a symbolic link perhaps).
 std::FILE* createFile(const std::string& path);

@@ -41,8 +41,7 @@ Result<std::vector<SkinnedGeometry*>> meshesNamed(const osg::Group& group, const
     forEachMesh(group, sort);
     if (!ofNode.empty()) return ofNode;
     if (!ofMesh.empty()) return ofMesh;
-    return Error{"there is no mesh \"" + name + "\"; the meshes are " +
-                 quotedNames(names, [](const std::string& known) { return known; })};
+    return Error{"there is no mesh \"" + name + "\"; the meshes are " + quotedNames(names)};
 }
 
 } // namespace osgGpuAnimation

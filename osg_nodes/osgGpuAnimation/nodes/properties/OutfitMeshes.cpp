@@ -100,8 +100,7 @@ void addTo(States& states, osg::StateSet* state, std::size_t number)
 
 std::string quotedList(const std::set<std::string>& names)
 {
-    return quotedNames(std::vector<std::string>(names.begin(), names.end()),
-                       [](const std::string& name) { return name; });
+    return quotedNames(std::vector<std::string>(names.begin(), names.end()));
 }
 
 } // namespace

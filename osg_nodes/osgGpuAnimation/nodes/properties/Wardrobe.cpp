@@ -24,11 +24,6 @@ namespace
 
 const char* const garmentKey = "osgGpuAnimation.garment";
 
-std::string quotedList(const std::vector<std::string>& names)
-{
-    return quotedNames(names, [](const std::string& name) { return name; });
-}
-
 void addOnce(std::vector<std::string>& names, const std::string& name)
 {
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
@@ -92,9 +87,9 @@ public:
     Result<FittedGarment> fit(const std::shared_ptr<const AnimationSet>& body) const
     {
         if (!_lost.empty())
-            return Error{"the character has no joints " + quotedList(_lost) +
+            return Error{"the character has no joints " + quotedNames(_lost) +
                          ", nor any joint that is above them in the garment; its joints are " +
-                         quotedList(namesIn(body->skeleton().joints()))};
+                         quotedNames(namesIn(body->skeleton().joints()))};
         FittedGarment fitted{body, {}, _further.joints.size(), _followed, {}};
         if (_further.joints.empty()) return fitted;
         constexpr std::size_t maxEntries = 65536; // entries are 16-bit numbers

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/math/detail/RegularFile.h>
 #include <osgGpuAnimation/math/detail/System.h>
 
 #include <cerrno>
@@ -8,7 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace osgGpuAnimation::system
+namespace osgGpuAnimation
 {
 
 namespace
@@ -29,7 +30,7 @@ Error ofOpening(int code)
 
 } // namespace
 
-Result<File> openRegularFile(const std::string& path)
+Result<RegularFile> RegularFile::open(const std::string& path)
 {
     struct stat status;
     // Checked before opening, because opening a device can have an effect.
@@ -38,52 +39,52 @@ Result<File> openRegularFile(const std::string& path)
     const int descriptor = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     if (descriptor < 0) return ofOpening(errno);
     if (::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode))
-        return File{descriptor, static_cast<std::uint64_t>(status.st_size)};
+        return RegularFile(descriptor, static_cast<std::size_t>(status.st_size));
     ::close(descriptor);
     return ofKind(status.st_mode);
 }
 
-void closeFile(std::intptr_t handle)
+RegularFile::~RegularFile()
 {
-    ::close(static_cast<int>(handle));
+    if (_handle != none) ::close(static_cast<int>(_handle));
 }
 
-bool isSameFile(std::intptr_t handle, const std::string& path)
+bool RegularFile::isSameAs(const std::string& path) const
 {
     struct stat mine, other;
-    return ::fstat(static_cast<int>(handle), &mine) == 0 && ::stat(path.c_str(), &other) == 0 &&
+    return ::fstat(static_cast<int>(_handle), &mine) == 0 && ::stat(path.c_str(), &other) == 0 &&
            mine.st_dev == other.st_dev && mine.st_ino == other.st_ino;
 }
 
-Result<std::size_t> readFile(std::intptr_t handle, std::uint64_t from, void* to, std::size_t bytes)
+Result<std::size_t> RegularFile::readSome(std::uint64_t from, void* to, std::size_t bytes) const
 {
     for (;;)
     {
-        const ssize_t count = ::pread(static_cast<int>(handle), to, bytes, static_cast<off_t>(from));
+        const ssize_t count = ::pread(static_cast<int>(_handle), to, bytes, static_cast<off_t>(from));
         if (count >= 0) return static_cast<std::size_t>(count);
         if (errno != EINTR) return Error{std::string("the file cannot be read: ") + std::strerror(errno)};
     }
 }
 
-std::FILE* createFile(const std::string& path)
+std::FILE* system::createFile(const std::string& path)
 {
     return std::fopen(path.c_str(), "wbx");
 }
 
-std::string moduleOf(const void* address)
+std::string system::moduleOf(const void* address)
 {
     Dl_info found;
     return dladdr(address, &found) && found.dli_fname ? found.dli_fname : "";
 }
 
-unsigned long processId()
+unsigned long system::processId()
 {
     return static_cast<unsigned long>(::getpid());
 }
 
-bool isErrorTerminal()
+bool system::isErrorTerminal()
 {
     return ::isatty(STDERR_FILENO) != 0;
 }
 
-} // namespace osgGpuAnimation::system
+} // namespace osgGpuAnimation

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/math/detail/RegularFile.h>
 #include <osgGpuAnimation/math/detail/System.h>
 
 #include <algorithm>
@@ -11,7 +12,7 @@
 
 #include <windows.h>
 
-namespace osgGpuAnimation::system
+namespace osgGpuAnimation
 {
 
 namespace
@@ -46,7 +47,7 @@ bool identify(HANDLE file, BY_HANDLE_FILE_INFORMATION& outInformation)
     return file != INVALID_HANDLE_VALUE && GetFileInformationByHandle(file, &outInformation) != 0;
 }
 
-HANDLE open(const std::string& path, DWORD access)
+HANDLE openPath(const std::string& path, DWORD access)
 {
     // Without the flag for backups, a folder cannot be opened; of a pipe, no server learns who this process is.
     const DWORD flags = FILE_FLAG_BACKUP_SEMANTICS | SECURITY_SQOS_PRESENT | SECURITY_ANONYMOUS;
@@ -56,9 +57,9 @@ HANDLE open(const std::string& path, DWORD access)
 
 } // namespace
 
-Result<File> openRegularFile(const std::string& path)
+Result<RegularFile> RegularFile::open(const std::string& path)
 {
-    const HANDLE file = open(path, GENERIC_READ);
+    const HANDLE file = openPath(path, GENERIC_READ);
     if (file == INVALID_HANDLE_VALUE)
     {
         const DWORD code = GetLastError();
@@ -71,50 +72,50 @@ Result<File> openRegularFile(const std::string& path)
     const bool isKnown = type == FILE_TYPE_DISK && identify(file, found);
     const bool isFolder = isKnown && (found.dwFileAttributes & FILE_ATTRIBUTE_DIRECTORY) != 0;
     if (isKnown && !isFolder)
-        return File{reinterpret_cast<std::intptr_t>(file),
-                    std::uint64_t(found.nFileSizeHigh) << 32 | found.nFileSizeLow};
+        return RegularFile(reinterpret_cast<std::intptr_t>(file),
+                           static_cast<std::size_t>(std::uint64_t(found.nFileSizeHigh) << 32 | found.nFileSizeLow));
     CloseHandle(file);
     return Error{std::string("expected a regular file, found ") + (isFolder                 ? "a folder"
                                                                    : type == FILE_TYPE_PIPE ? "a pipe"
                                                                                             : "a device or socket")};
 }
 
-void closeFile(std::intptr_t handle)
+RegularFile::~RegularFile()
 {
-    CloseHandle(asHandle(handle));
+    if (_handle != none) CloseHandle(asHandle(_handle));
 }
 
-bool isSameFile(std::intptr_t handle, const std::string& path)
+bool RegularFile::isSameAs(const std::string& path) const
 {
     BY_HANDLE_FILE_INFORMATION mine{}, other{};
-    const HANDLE file = open(path, 0);
-    const bool isSame = identify(asHandle(handle), mine) && identify(file, other) &&
+    const HANDLE file = openPath(path, 0);
+    const bool isSame = identify(asHandle(_handle), mine) && identify(file, other) &&
                         mine.dwVolumeSerialNumber == other.dwVolumeSerialNumber &&
                         mine.nFileIndexHigh == other.nFileIndexHigh && mine.nFileIndexLow == other.nFileIndexLow;
     if (file != INVALID_HANDLE_VALUE) CloseHandle(file);
     return isSame;
 }
 
-Result<std::size_t> readFile(std::intptr_t handle, std::uint64_t from, void* to, std::size_t bytes)
+Result<std::size_t> RegularFile::readSome(std::uint64_t from, void* to, std::size_t bytes) const
 {
     OVERLAPPED place{};
     place.Offset = static_cast<DWORD>(from);
     place.OffsetHigh = static_cast<DWORD>(from >> 32);
     DWORD count = 0;
     const auto wanted = static_cast<DWORD>(std::min<std::size_t>(bytes, std::size_t(1) << 30));
-    if (ReadFile(asHandle(handle), to, wanted, &count, &place) || GetLastError() == ERROR_HANDLE_EOF)
+    if (ReadFile(asHandle(_handle), to, wanted, &count, &place) || GetLastError() == ERROR_HANDLE_EOF)
         return std::size_t(count);
     return Error{"the file cannot be read: " + lastError()};
 }
 
-std::FILE* createFile(const std::string& path)
+std::FILE* system::createFile(const std::string& path)
 {
     const int flags = _O_CREAT | _O_EXCL | _O_WRONLY | _O_BINARY | _O_NOINHERIT;
     const int descriptor = _wopen(asWide(path).c_str(), flags, _S_IREAD | _S_IWRITE);
     return descriptor < 0 ? nullptr : _fdopen(descriptor, "wb");
 }
 
-std::string moduleOf(const void* address)
+std::string system::moduleOf(const void* address)
 {
     HMODULE module = nullptr;
     const DWORD flags = GET_MODULE_HANDLE_EX_FLAG_FROM_ADDRESS | GET_MODULE_HANDLE_EX_FLAG_UNCHANGED_REFCOUNT;
@@ -132,16 +133,16 @@ std::string moduleOf(const void* address)
     }
 }
 
-unsigned long processId()
+unsigned long system::processId()
 {
     return GetCurrentProcessId();
 }
 
-bool isErrorTerminal()
+bool system::isErrorTerminal()
 {
     DWORD mode = 0;
     const HANDLE error = GetStdHandle(STD_ERROR_HANDLE);
     return GetConsoleMode(error, &mode) && (mode & ENABLE_VIRTUAL_TERMINAL_PROCESSING) != 0;
 }
 
-} // namespace osgGpuAnimation::system
+} // namespace osgGpuAnimation

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace osgGpuAnimation
 {
@@ -60,5 +61,34 @@ private:
     std::uint64_t _serial = 0;
     std::size_t _capacity = 0;
 };
+
+/// Uploads the units that have changed, side by side ones together, and returns their bytes. uploaded: the serials of
+/// the units in the buffer. serialOf(unit), elementsOf(unit): of the `count` present ones. memory: kept from call to
+/// call.
+template <typename Element, typename SerialOf, typename ElementsOf>
+std::size_t uploadChangedUnits(BufferTexture& buffer, std::size_t unitBytes, std::size_t count,
+                               std::vector<std::uint64_t>& uploaded, std::vector<Element>& memory, SerialOf serialOf,
+                               ElementsOf elementsOf)
+{
+    std::size_t bytes = 0;
+    if (buffer.reserve(count * unitBytes)) uploaded.clear(); // new storage is empty
+    uploaded.resize(count, 0);
+    for (std::size_t first = 0, end = 0; first < count; first = end + 1)
+    {
+        memory.clear();
+        for (end = first; end < count && uploaded[end] != serialOf(end); ++end)
+        {
+            const auto& elements = elementsOf(end);
+            memory.insert(memory.end(), elements.begin(), elements.end());
+            uploaded[end] = serialOf(end);
+        }
+        if (end - first == count) // all of it at once does not wait for earlier draws
+            buffer.upload(memory.data(), count * unitBytes);
+        else if (end > first)
+            buffer.uploadPart(first * unitBytes, memory.data(), (end - first) * unitBytes);
+        bytes += (end - first) * unitBytes;
+    }
+    return bytes;
+}
 
 } // namespace osgGpuAnimation

@@ -22,34 +22,15 @@ PlacedInstanceBuffers& PlacedInstanceBuffers::of(osg::State& state)
     return *osg::get<PlacedInstanceBuffers>(state.getContextID());
 }
 
-/// Uploads the blocks that have changed, side by side ones together.
 template <typename Element>
 void PlacedInstanceBuffers::upload(const typename SharedBlocks<Element>::Snapshot& blocks, Blocks& uploaded)
 {
     using Block = typename SharedBlocks<Element>::Block;
-    constexpr std::size_t bytes = sizeof(Block::elements);
-    if (uploaded.buffer->reserve(blocks.size() * bytes)) uploaded.serials.clear(); // new storage is empty
-    uploaded.serials.resize(blocks.size(), 0);
-    const auto isNew = [&](std::size_t block) { return uploaded.serials[block] != blocks[block]->serial; };
-    std::vector<Element> changed;
-    for (std::size_t first = 0; first < blocks.size(); ++first)
-    {
-        if (!isNew(first)) continue;
-        std::size_t end = first;
-        changed.clear();
-        for (; end < blocks.size() && isNew(end); ++end)
-        {
-            changed.insert(changed.end(), blocks[end]->elements.begin(), blocks[end]->elements.end());
-            uploaded.serials[end] = blocks[end]->serial;
-        }
-        // All of it at once does not wait for earlier draws.
-        if (end - first == blocks.size())
-            uploaded.buffer->upload(changed.data(), blocks.size() * bytes);
-        else
-            uploaded.buffer->uploadPart(first * bytes, changed.data(), (end - first) * bytes);
-        _bytesUploaded += (end - first) * bytes;
-        first = end;
-    }
+    std::vector<Element> memory;
+    _bytesUploaded += uploadChangedUnits(
+        *uploaded.buffer, sizeof(Block::elements), blocks.size(), uploaded.serials, memory,
+        [&](std::size_t block) { return blocks[block]->serial; },
+        [&](std::size_t block) -> const auto& { return blocks[block]->elements; });
 }
 
 const BufferTexture& PlacedInstanceBuffers::listBuffer(const std::shared_ptr<const PlacedInstances>& placed)

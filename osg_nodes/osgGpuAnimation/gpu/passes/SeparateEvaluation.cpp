@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/gpu/passes/SeparateEvaluation.h>
 
-#include <osgGpuAnimation/gpu/passes/TextureUnits.h>
-
 #include <algorithm>
 
 namespace osgGpuAnimation
@@ -25,7 +23,9 @@ bool evaluateSeparately(EvaluationContext& context, FeedbackScope& scope, const 
     variant.setMotion(buffers.anyTrack());
     variant.translationMotion = std::max(variant.translationMotion, PartMotion::Constant);
     variant.scaleMotion = std::max(variant.scaleMotion, PartMotion::Constant);
-    FeedbackPass &mix = context.mixPass(variant), &local = context.localPass(), &world = context.worldPass();
+    using Stage = EvaluationContext::Stage;
+    FeedbackPass &mix = context.pass(Stage::Mix, variant), &local = context.pass(Stage::Local),
+                 &world = context.pass(Stage::World);
     if (!mix.valid() || !local.valid() || !world.valid()) return false;
     context.useMixInput(scope, mix, set, buffers, chunk);
     run(mix, trackVertices, context.mixedTracks);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "mesh/Tube.h"
+#include "support/MadeLevels.h"
 #include "support/TestCrowd.h"
 
-#include <osgGpuAnimation/mesh/detail/MeshDetail.h>
 #include <osgGpuAnimation/mesh/lod/LodLevels.h>
 
 #include <cmath>
@@ -24,7 +24,9 @@ LodLevels::Skinning skinningOf(const SkinnedGeometry& mesh)
 
 LodLevels levelsOf(const SkinnedGeometry& mesh, const AnimationSet& set)
 {
-    return LodLevels(mesh, set, skinningOf(mesh));
+    LodLevels levels(mesh);
+    levels.addSteps(mesh, set, skinningOf(mesh), nullptr);
+    return levels;
 }
 
 /// The number of drawn indices of the first primitive set.
@@ -75,13 +77,13 @@ TEST(LodLevelsTest, keepAnElbowThatBendsInAClipAndFollowANewSet)
     character->addChild(tube);
     ASSERT_TRUE(character->getMeshes().setPixelError(1.0f));
     const int level = -10; // 1/32; the tube is 1 thick
-    const auto drawnOf = [&](const AnimationSet& set) { return drawn(*tube, *MeshDetail::levels(*tube, set), level); };
+    const auto drawnOf = [&](const AnimationSet& set) { return drawn(*tube, *madeLevels(*tube, set), level); };
     const std::size_t straight = drawnOf(*still);
     EXPECT_LT(straight, 300u) << "straight, it needs but its ends";
     ASSERT_TRUE(character->setAnimationSet(bending));
     EXPECT_GT(drawnOf(*bending), 2 * straight);
     EXPECT_LT(drawnOf(*bending), tube->getPrimitiveSet(0)->getNumIndices() / 4);
-    EXPECT_EQ(drawn(*tube, *MeshDetail::levels(*tube, *bending), LodLevels::allTriangles), trianglesOf(*tube).size());
+    EXPECT_EQ(drawn(*tube, *madeLevels(*tube, *bending), LodLevels::allTriangles), trianglesOf(*tube).size());
     ASSERT_TRUE(character->setAnimationSet(still));
     EXPECT_EQ(drawnOf(*still), straight);
 }

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/mesh/detail/MeshDetail.h>
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/mesh/lod/CharacterLevels.h>
 
@@ -87,20 +86,6 @@ std::vector<CharacterLevels::Part> CharacterLevels::partsOf(const osg::Group& me
     std::vector<Part> parts;
     forEachMesh(meshes, [&](const SkinnedGeometry& mesh) { parts.emplace_back(mesh); });
     return parts;
-}
-
-CharacterLevels::CharacterLevels(const osg::Group& meshes, const AnimationSet& set)
-    : CharacterLevels(partsOf(meshes), set)
-{
-    std::vector<Sources::Mesh> all;
-    for (const Part& part : _parts)
-        all.push_back({part.mesh, part.mesh});
-    const Sources sources(all);
-    if (sources.isEmpty()) return;
-    Sources::Levels levels;
-    for (const Part& part : _parts)
-        levels.push_back(MeshDetail::levels(*part.mesh, set));
-    includeMade(sources.make(set, levels, nullptr));
 }
 
 CharacterLevels::Sources::Sources(const std::vector<Mesh>& meshes, bool keepsParts) : _keepsParts(keepsParts)

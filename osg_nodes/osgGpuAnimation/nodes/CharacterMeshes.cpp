@@ -76,22 +76,14 @@ Result<void> CharacterMeshes::setVisible(const std::string& name, bool isVisible
 
 std::vector<std::string> CharacterMeshes::getVariants() const
 {
-    std::vector<std::string> names = variantNamesOf(_node);
-    const auto addNames = [&](const SkinnedGeometry& mesh)
-    {
-        for (const std::string& name : variantNamesOf(mesh))
-            if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-    };
-    forEachMesh(_node, addNames);
-    return names;
+    return variantNamesIn(_node);
 }
 
 Result<void> CharacterMeshes::setVariant(const std::string& name)
 {
     const std::vector<std::string> names = getVariants();
     if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end())
-        return Error{"there is no material variant \"" + name + "\"; the variants are " +
-                     quotedNames(names, [](const std::string& known) { return known; })};
+        return Error{"there is no material variant \"" + name + "\"; the variants are " + quotedNames(names)};
     _variant = name;
     change([&] { _variantMeshes->show(_node, name); });
     return {};

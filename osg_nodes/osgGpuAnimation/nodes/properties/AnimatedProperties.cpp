@@ -124,12 +124,12 @@ public:
     }
     void apply(osg::LightSource& source) override
     {
-        if (markOf(source) || !visibilityOf(source).empty()) _visit(source);
+        if (markOf(source, lightMark) || !visibilityOf(source).empty()) _visit(source);
         traverse(source);
     }
     void apply(osg::CameraView& view) override
     {
-        if (markOf(view)) _visit(view);
+        if (markOf(view, cameraMark)) _visit(view);
         traverse(view);
     }
 
@@ -173,13 +173,13 @@ UnanimatedMeshes::~UnanimatedMeshes() = default;
 
 osg::StateSet* UnanimatedMeshes::stateAtRest(osg::StateSet* state)
 {
-    const std::optional<int> material = state ? markOf(*state) : std::nullopt;
+    const std::optional<int> material = state ? markOf(*state, materialMark) : std::nullopt;
     if (!material) return state;
     osg::ref_ptr<osg::StateSet>& own = _states[state];
     if (own) return own;
     own = ownState(*state);
     own->setDataVariance(osg::Object::STATIC);
-    removeMark(*own);
+    removeMark(*own, materialMark);
     if (_properties) _properties->setMaterials(*own, *material);
     return own;
 }
@@ -206,7 +206,7 @@ void UnanimatedMeshes::release(osg::Geometry& copy)
         copy.setNodeMask(isShown ? applicationMask(copy) : 0);
     }
     copy.setStateSet(stateAtRest(copy.getStateSet()));
-    removeVisibility(copy); // gives the copy its own user data, which the variants belong to
+    removeMark(copy, visibilityMark); // gives the copy its own user data, which the variants belong to
     if (!names.empty()) setVariantStates(copy, defaultState, variants);
 }
 
@@ -290,13 +290,13 @@ void AnimatedProperties::bindChildren(osg::Group& character, OwnStates& owned)
             continue;
         }
         osg::StateSet* state = mesh->getStateSet();
-        if (state && markOf(*state))
+        if (const auto material = state ? markOf(*state, materialMark) : std::nullopt)
         {
             osg::ref_ptr<osg::StateSet>& own = owned[state];
             if (!own)
             {
                 own = ownState(*state);
-                _materials.push_back({*markOf(*state), own});
+                _materials.push_back({*material, own});
             }
             mesh->setStateSet(own);
         }
@@ -318,12 +318,12 @@ void AnimatedProperties::bindBelow(osg::Node& node)
                   [&](osg::Node& marked)
                   {
                       if (auto* view = dynamic_cast<osg::CameraView*>(&marked))
-                          return _cameras.push_back({*markOf(*view), view});
+                          return _cameras.push_back({*markOf(*view, cameraMark), view});
                       auto& source = static_cast<osg::LightSource&>(marked);
                       osg::Light* light = source.getLight();
                       if (!light) return;
                       osg::Light* shown = shownLight(*light);
-                      _lights.push_back({markOf(source).value_or(-1), &source, shown ? shown : light,
+                      _lights.push_back({markOf(source, lightMark).value_or(-1), &source, shown ? shown : light,
                                          visibilityOf(source), shown == nullptr});
                   });
 }

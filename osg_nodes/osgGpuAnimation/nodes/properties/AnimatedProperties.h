@@ -8,14 +8,12 @@
 #include <osg/Geometry>
 #include <osg/Group>
 #include <osg/LightSource>
-#include <osg/observer_ptr>
 #include <osg/StateSet>
 
 #include <array>
 #include <cstddef>
 #include <map>
 #include <memory>
-#include <string>
 #include <utility>
 #include <vector>
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/properties/Wardrobe.h>
 
-#include <osgGpuAnimation/animation/bounds/ClipBounds.h>
 #include <osgGpuAnimation/authoring/retarget/JointNames.h>
-#include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/nodes/properties/AnimatedProperties.h>
 
 #include <osg/UserDataContainer>
@@ -23,11 +21,6 @@ namespace
 {
 
 const char* const garmentKey = "osgGpuAnimation.garment";
-
-std::string quotedList(const std::vector<std::string>& names)
-{
-    return quotedNames(names, [](const std::string& name) { return name; });
-}
 
 void addOnce(std::vector<std::string>& names, const std::string& name)
 {
@@ -92,10 +85,10 @@ public:
     Result<FittedGarment> fit(const std::shared_ptr<const AnimationSet>& body) const
     {
         if (!_lost.empty())
-            return Error{"the character has no joints " + quotedList(_lost) +
+            return Error{"the character has no joints " + quotedNames(_lost) +
                          ", nor any joint that is above them in the garment; its joints are " +
-                         quotedList(namesIn(body->skeleton().joints()))};
-        FittedGarment fitted{body, {}, _further.joints.size(), _followed, {}};
+                         quotedNames(namesIn(body->skeleton().joints()))};
+        FittedGarment fitted{{_further.joints.size(), _followed, {}}, body, {}};
         if (_further.joints.empty()) return fitted;
         constexpr std::size_t maxEntries = 65536; // entries are 16-bit numbers
         if (body->paletteSize() + _further.joints.size() > maxEntries)
@@ -218,16 +211,6 @@ void setIdentifier(SkinnedGeometry& mesh, const std::string& identifier)
 
 } // namespace
 
-ClipBoxes::ClipBoxes(const std::vector<const SkinnedGeometry*>& meshes, const AnimationSet& set)
-{
-    MixBounds::Boxes boxes = mixBoxesOf(meshes, set);
-    std::vector<osg::BoundingBox> bounds;
-    for (const Box& box : boundsOfClips(set, boxes.ofClips))
-        bounds.push_back(toOsg(box));
-    ofClips = std::make_shared<const std::vector<osg::BoundingBox>>(std::move(bounds));
-    ofMixes = std::make_shared<const MixBounds>(set, std::move(boxes));
-}
-
 bool Wardrobe::areSame(const ObservedMeshes& known, const Meshes& meshes)
 {
     return std::equal(known.begin(), known.end(), meshes.begin(), meshes.end(),
@@ -340,8 +323,7 @@ std::shared_ptr<const AnimationSet> Wardrobe::withoutUnused(const std::shared_pt
     return fewer ? fewer.value() : set;
 }
 
-ClipBoxes Wardrobe::boxes(const std::vector<const SkinnedGeometry*>& meshes,
-                          const std::shared_ptr<const AnimationSet>& set)
+std::shared_ptr<const ClipBoxes> Wardrobe::boxes(const Meshes& meshes, const std::shared_ptr<const AnimationSet>& set)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
     for (auto known = _outfits.begin(); known != _outfits.end();)
@@ -350,9 +332,9 @@ ClipBoxes Wardrobe::boxes(const std::vector<const SkinnedGeometry*>& meshes,
         if (exists && known->set.lock() == set && areSame(known->meshes, meshes)) return known->boxes;
         known = exists ? std::next(known) : _outfits.erase(known);
     }
-    Outfit outfit{{meshes.begin(), meshes.end()}, set, ClipBoxes(meshes, *set)};
-    _outfits.push_back(outfit);
-    return outfit.boxes;
+    const auto boxes = std::make_shared<const ClipBoxes>(*set, mixBoxesOf(meshes, *set));
+    _outfits.push_back({{meshes.begin(), meshes.end()}, set, boxes});
+    return boxes;
 }
 
 } // namespace osgGpuAnimation

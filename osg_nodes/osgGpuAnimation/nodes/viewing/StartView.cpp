@@ -121,7 +121,7 @@ void StartView::follow(osg::Node& node)
 {
     const osg::CameraView* const camera = findBelow<osg::CameraView>(node, &_camera);
     // Not lock(): a viewer on the stack, as osgviewer's, has no references.
-    if (camera && _view.valid() && markOf(*camera)) setProjection(*_view->getCamera(), *camera);
+    if (camera && _view.valid() && markOf(*camera, cameraMark)) setProjection(*_view->getCamera(), *camera);
     if (camera && _view.valid() && _view->getCameraManipulator())
         _view->getCameraManipulator()->setByMatrix(viewToWorld(*camera));
 }

@@ -4,7 +4,6 @@
 #include <osg/GLExtensions>
 #include <osg/Light>
 #include <osg/Matrix>
-#include <osg/Program>
 #include <osg/StateAttribute>
 #include <osgUtil/CullVisitor>
 #include <osgUtil/RenderStage>

@@ -60,7 +60,6 @@ protected:
 private:
     void addToHelp(osgGA::GUIActionAdapter& action);
     bool isFirstTime(const osgGA::GUIEventAdapter& event, const osg::Object& character);
-    void changeClip(AnimationController& controller, int step) const;
 
     double _fadeSeconds = 0.3;
     osg::observer_ptr<osg::View> _helped;              ///< the last view that addToHelp() has seen

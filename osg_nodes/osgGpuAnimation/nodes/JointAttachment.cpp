@@ -7,8 +7,6 @@
 #include <osg/NodeVisitor>
 #include <osg/Notify>
 
-#include <algorithm>
-
 namespace osgGpuAnimation
 {
 

@@ -34,7 +34,7 @@ bool RaisedHome::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAda
     double fieldOfView = 0.0, aspect = 1.0, zNear = 0.0, zFar = 0.0;
     if (!view->getCamera()->getProjectionMatrixAsPerspective(fieldOfView, aspect, zNear, zFar)) return false;
     osg::Group* const group = node->asGroup();
-    const std::vector<osg::Vec3d> points = group ? sweptPointsOf(*group) : std::vector<osg::Vec3d>();
+    const std::vector<osg::Vec3d> points = group ? pointsOf(*group, 12) : std::vector<osg::Vec3d>();
     if (points.empty()) return false;
 
     Standpoint place = standpointFrom(fillingDirection(points), points, fieldOfView, aspect, margin);

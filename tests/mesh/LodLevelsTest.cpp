@@ -8,7 +8,6 @@
 #include <cmath>
 #include <ctime>
 #include <limits>
-#include <thread>
 
 namespace osgGpuAnimation
 {
@@ -232,26 +231,18 @@ TEST(LodLevelsTest, takeNoTimeByTheSquareOfTheTrianglesAtAPoint)
     EXPECT_FALSE(has(levelsOf(*tooLarge, *armSet())));
 }
 
-TEST(LodLevelsTest, areMadeOncePerMeshAndAnewWhenItChanges)
+TEST(LodLevelsTest, areNoneAfterTheMeshHasChanged)
 {
     const auto set = armSet();
     const osg::ref_ptr<SkinnedGeometry> tube = makeTube(*set);
-    const MeshLod detail;
-    EXPECT_EQ(detail.known(*tube), nullptr);
-    std::vector<std::shared_ptr<const LodLevels>> seen(4);
-    std::vector<std::thread> threads;
-    for (std::shared_ptr<const LodLevels>& levels : seen)
-        threads.emplace_back([&] { levels = detail.of(*tube, *set, skinningOf(*tube)); });
-    for (std::thread& thread : threads)
-        thread.join();
-    for (const std::shared_ptr<const LodLevels>& levels : seen)
-        EXPECT_EQ(levels, seen.front());
-    EXPECT_EQ(detail.known(*tube), seen.front());
+    EXPECT_EQ(MeshDetail::findLevels(*tube), nullptr);
+    const std::shared_ptr<const LodLevels> first = madeLevels(*tube, *set);
+    EXPECT_EQ(MeshDetail::findLevels(*tube), first);
     tube->getVertexArray()->dirty();
-    EXPECT_EQ(detail.known(*tube), nullptr);
-    EXPECT_NE(detail.of(*tube, *set, skinningOf(*tube)), seen.front());
+    EXPECT_EQ(MeshDetail::findLevels(*tube), nullptr);
+    EXPECT_NE(madeLevels(*tube, *set), first);
     tube->getPrimitiveSet(0)->dirty();
-    EXPECT_EQ(detail.known(*tube), nullptr);
+    EXPECT_EQ(MeshDetail::findLevels(*tube), nullptr);
 }
 
 template <typename Animated>

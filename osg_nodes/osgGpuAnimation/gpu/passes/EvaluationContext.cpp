@@ -3,11 +3,6 @@
 
 #include <ShaderSources.h>
 
-#ifndef GL_COPY_READ_BUFFER
-#define GL_COPY_READ_BUFFER 0x8F36
-#define GL_COPY_WRITE_BUFFER 0x8F37
-#endif
-
 namespace osgGpuAnimation
 {
 

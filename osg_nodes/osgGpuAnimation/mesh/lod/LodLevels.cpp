@@ -404,16 +404,6 @@ double LodLevels::foundError(int level) const
     return error;
 }
 
-void LodLevels::releaseGLObjects(osg::State* state) const
-{
-    _buffer->releaseGLObjects(state);
-}
-
-void LodLevels::resizeGLObjectBuffers(unsigned int maxSize) const
-{
-    _buffer->resizeGLObjectBuffers(maxSize);
-}
-
 std::shared_ptr<const LodLevels> MeshLod::known(const osg::Geometry& mesh) const
 {
     std::shared_ptr<const LodLevels> levels = std::atomic_load(&_levels);
@@ -424,11 +414,6 @@ void MeshLod::forget()
 {
     ++_forgetCount;
     set(nullptr);
-}
-
-void MeshLod::set(std::shared_ptr<const LodLevels> levels)
-{
-    std::atomic_store(&_levels, std::move(levels));
 }
 
 } // namespace osgGpuAnimation

@@ -121,8 +121,8 @@ public:
     /// Whole triangles, by vertex; empty for null, other primitives and vertices that do not exist.
     static std::vector<std::uint32_t> trianglesOf(const osg::PrimitiveSet* primitives, std::size_t vertexCount);
 
-    void releaseGLObjects(osg::State* state) const;
-    void resizeGLObjectBuffers(unsigned int maxSize) const;
+    void releaseGLObjects(osg::State* state) const { _buffer->releaseGLObjects(state); }
+    void resizeGLObjectBuffers(unsigned int maxSize) const { _buffer->resizeGLObjectBuffers(maxSize); }
 
 private:
     struct Primitives
@@ -155,7 +155,7 @@ public:
 
     /// Null: not created, or the mesh has changed.
     std::shared_ptr<const LodLevels> known(const osg::Geometry& mesh) const;
-    void set(std::shared_ptr<const LodLevels> levels);
+    void set(std::shared_ptr<const LodLevels> levels) { std::atomic_store(&_levels, std::move(levels)); }
     /// Discards the levels after a change of influences, morph targets or clips.
     void forget();
     unsigned int forgetCount() const { return _forgetCount; } ///< of calls of forget()

@@ -300,16 +300,12 @@ void AnimatedProperties::bindChildren(osg::Group& character, OwnStates& owned)
             }
             mesh->setStateSet(own);
         }
-        bindMesh(*mesh);
+        if (std::vector<int> nodes = visibilityOf(*mesh); !nodes.empty())
+        {
+            if (_hasApplicationMasks && mesh->getNodeMask() == 0) storeMask(*mesh, 0);
+            _hidables.push_back({mesh, std::move(nodes)});
+        }
     }
-}
-
-void AnimatedProperties::bindMesh(osg::Drawable& mesh)
-{
-    std::vector<int> nodes = visibilityOf(mesh);
-    if (nodes.empty()) return;
-    if (_hasApplicationMasks && mesh.getNodeMask() == 0) storeMask(mesh, 0);
-    _hidables.push_back({&mesh, std::move(nodes)});
 }
 
 void AnimatedProperties::bindBelow(osg::Node& node)

@@ -92,7 +92,6 @@ private:
     AnimatedProperties() = default;
     using OwnStates = std::map<const osg::StateSet*, osg::ref_ptr<osg::StateSet>>; ///< by the marked one
     void bindChildren(osg::Group& group, OwnStates& owned);
-    void bindMesh(osg::Drawable& mesh);
     void bindBelow(osg::Node& node);
     /// The numbers that are shown, first those at rest, or the default; within the member's range.
     std::array<float, 4> valueOf(const PropertyMember& member, int index) const;

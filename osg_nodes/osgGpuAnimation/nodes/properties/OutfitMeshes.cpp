@@ -25,14 +25,6 @@ namespace
 static_assert(OutfitLists::maxOutfits + 1 <= POSE_OUTFITS_PER_VECTOR * POSE_OUTFIT_VECTORS);
 static_assert(POSE_OUTFITS_PER_VECTOR == 4, "the components of a vector");
 
-template <typename Function>
-void forEachState(const SkinnedGeometry& mesh, const std::vector<std::string>& variants, Function function)
-{
-    if (const osg::StateSet* state = mesh.getStateSet()) function(*state);
-    for (const std::string& variant : variants)
-        if (const osg::StateSet* state = variantState(mesh, variant)) function(*state);
-}
-
 /// The base-colour texture with another picture; of a material without one a repeated texture.
 osg::ref_ptr<osg::Texture2D> picturedTexture(const osg::StateSet& state, osg::Image& picture)
 {
@@ -137,17 +129,23 @@ Result<void> OutfitMeshes::check(const osg::Group& crowd, const AnimationSet& se
     const std::string subject = "outfit \"" + outfit->getName() + "\": ";
     const std::vector<std::string> variants = variantNamesIn(crowd);
     std::set<std::string> materials;
-    const auto addMaterial = [&](const osg::StateSet& state)
+    const auto addMaterial = [&](const osg::StateSet* state)
     {
-        if (!state.getName().empty()) materials.insert(state.getName());
+        if (state && !state->getName().empty()) materials.insert(state->getName());
     };
-    forEachMesh(crowd, [&](const SkinnedGeometry& mesh) { forEachState(mesh, variants, addMaterial); });
+    const auto addMaterials = [&](const SkinnedGeometry& mesh)
+    {
+        addMaterial(mesh.getStateSet());
+        for (const std::string& variant : variants)
+            addMaterial(variantState(mesh, variant));
+    };
+    forEachMesh(crowd, addMaterials);
     for (const Outfit::Prop& prop : outfit->getProps())
     {
         const Result<const PropMesh*> known = propMesh(prop, set);
         if (!known) return Error{subject + known.error().message};
         for (const osg::ref_ptr<SkinnedGeometry>& mesh : known.value()->meshes)
-            addMaterial(*mesh->getStateSet());
+            addMaterial(mesh->getStateSet());
     }
     for (const auto& [part, isVisible] : outfit->getVisibility())
         if (const auto meshes = meshesNamed(crowd, part); !meshes) return Error{subject + meshes.error().message};

@@ -263,16 +263,12 @@ Result<FittedGarment> Wardrobe::fit(const osg::Node& garment, const AnimationSet
         setMorphs(*mesh, *source, set, fitted);
         fitted.meshes.push_back(mesh);
     }
-    Fitting fitting;
-    fitting.identifier = identifier;
-    fitting.sources.assign(meshes.begin(), meshes.end());
-    fitting.body = body;
-    fitting.set = fitted.set;
-    fitting.meshes.assign(fitted.meshes.begin(), fitted.meshes.end());
-    fitting.fitted = fitted;
-    fitting.fitted.set = nullptr;
-    fitting.fitted.meshes.clear();
-    _fittings.push_back(std::move(fitting));
+    _fittings.push_back({identifier,
+                         {meshes.begin(), meshes.end()},
+                         body,
+                         fitted.set,
+                         {fitted.meshes.begin(), fitted.meshes.end()},
+                         {fitted, nullptr, {}}});
     return fitted;
 }
 

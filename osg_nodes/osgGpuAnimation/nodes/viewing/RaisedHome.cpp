@@ -17,11 +17,6 @@ constexpr double margin = 1.12; ///< size of the window relative to the points i
 
 } // namespace
 
-RaisedHome::RaisedHome(const RaisedHome& other, const osg::CopyOp& copyop)
-    : osg::Object(other, copyop), osg::Callback(other, copyop), osgGA::GUIEventHandler(other, copyop)
-{
-}
-
 bool RaisedHome::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdapter& action, osg::Object* object,
                         osg::NodeVisitor* visitor)
 {

@@ -127,12 +127,6 @@ void printKeysOnce()
 
 } // namespace
 
-CharacterKeys::CharacterKeys(const CharacterKeys& other, const osg::CopyOp& copyop)
-    : osg::Object(other, copyop), osg::Callback(other, copyop), osgGA::GUIEventHandler(other, copyop),
-      _fadeSeconds(other._fadeSeconds)
-{
-}
-
 bool CharacterKeys::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdapter& action, osg::Object* object,
                            osg::NodeVisitor*)
 {

@@ -53,16 +53,6 @@ JointAttachment::JointAttachment()
     setNumChildrenRequiringUpdateTraversal(getNumChildrenRequiringUpdateTraversal() + 1);
 }
 
-JointAttachment::JointAttachment(const std::string& joint) : JointAttachment()
-{
-    _jointName = joint;
-}
-
-JointAttachment::JointAttachment(int joint) : JointAttachment()
-{
-    _joint = joint;
-}
-
 JointAttachment::JointAttachment(const JointAttachment& other, const osg::CopyOp& copyop)
     : osg::MatrixTransform(other, copyop), _jointName(other._jointName), _joint(other._joint), _offset(other._offset),
       _instance(other._instance), _resolvedSet(other._resolvedSet), _resolvedJoint(other._resolvedJoint),

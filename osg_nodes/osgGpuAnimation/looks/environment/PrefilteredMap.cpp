@@ -12,13 +12,6 @@
 #include <utility>
 #include <vector>
 
-#ifndef GL_RGBA16F_ARB
-#define GL_RGBA16F_ARB 0x881A
-#endif
-#ifndef GL_VERTEX_ARRAY_BINDING
-#define GL_VERTEX_ARRAY_BINDING 0x85B5
-#endif
-
 namespace osgGpuAnimation
 {
 

@@ -13,13 +13,6 @@
 #include <sstream>
 #include <string>
 
-#ifndef GL_HALF_FLOAT
-#define GL_HALF_FLOAT 0x140B
-#endif
-#ifndef GL_RG
-#define GL_RG 0x8227
-#endif
-
 namespace osgGpuAnimation
 {
 

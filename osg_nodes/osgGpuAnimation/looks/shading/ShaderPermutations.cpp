@@ -151,15 +151,8 @@ ShaderKey::Fog fogOf(osg::State& state)
 {
     const auto* fog = applied<osg::Fog>(state, osg::StateAttribute::FOG);
     if (!fog || !isModeOn(state, GL_FOG)) return ShaderKey::Fog::None;
-    switch (fog->getMode())
-    {
-    case osg::Fog::LINEAR:
-        return ShaderKey::Fog::Linear;
-    case osg::Fog::EXP:
-        return ShaderKey::Fog::Exp;
-    default:
-        return ShaderKey::Fog::Exp2;
-    }
+    if (fog->getMode() == osg::Fog::LINEAR) return ShaderKey::Fog::Linear;
+    return fog->getMode() == osg::Fog::EXP ? ShaderKey::Fog::Exp : ShaderKey::Fog::Exp2;
 }
 
 void readLights(osg::State& state, ShaderKey& surface)

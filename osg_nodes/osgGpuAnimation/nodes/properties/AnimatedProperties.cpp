@@ -452,12 +452,11 @@ void AnimatedProperties::apply(const AnimationSet& set, const PoseInstruction& i
             continue;
         if (member.object == Object::Node) isVisibilityChanged = true;
         if (member.object == Object::Light) lights.push_back(property.pointer.index);
-        for (const Material& material : _materials)
-            if (member.object == Object::Material && material.index == property.pointer.index)
-                setMaterial(*material.state, property.pointer);
-        for (const Camera& camera : _cameras)
-            if (member.object == Object::Camera && camera.index == property.pointer.index)
-                setCamera(*camera.view, property.pointer);
+        for (const auto& [index, state] : _materials)
+            if (member.object == Object::Material && index == property.pointer.index)
+                setMaterial(*state, property.pointer);
+        for (const auto& [index, view] : _cameras)
+            if (member.object == Object::Camera && index == property.pointer.index) setCamera(*view, property.pointer);
     }
     for (Light& light : _lights)
         setLight(light, std::find(lights.begin(), lights.end(), light.index) != lights.end());

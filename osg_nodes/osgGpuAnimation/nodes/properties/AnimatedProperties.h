@@ -65,11 +65,6 @@ private:
         PropertyPointer pointer;
         std::size_t first; ///< of its numbers in _numbers
     };
-    struct Material
-    {
-        int index;
-        osg::ref_ptr<osg::StateSet> state;
-    };
     struct Light
     {
         int index; ///< -1: only its visibility is animated
@@ -77,11 +72,6 @@ private:
         osg::ref_ptr<osg::Light> shown; ///< the light while it is visible
         std::vector<int> nodes;         ///< see markVisibility()
         bool isVisible = true;
-    };
-    struct Camera
-    {
-        int index;
-        osg::ref_ptr<osg::CameraView> view;
     };
     struct Hidable
     {
@@ -104,9 +94,9 @@ private:
 
     std::vector<Property> _properties;
     std::map<std::pair<const PropertyMember*, int>, std::size_t> _firstNumbers; ///< by member and index, in _numbers
-    std::vector<Material> _materials;
+    std::vector<std::pair<int, osg::ref_ptr<osg::StateSet>>> _materials;        ///< with their indices
     std::vector<Light> _lights;
-    std::vector<Camera> _cameras;
+    std::vector<std::pair<int, osg::ref_ptr<osg::CameraView>>> _cameras; ///< with their indices
     std::vector<Hidable> _hidables;
     std::vector<float> _numbers, _shown; ///< of all properties
     bool _isBound = false;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "mesh/Tube.h"
+#include "support/MadeLevels.h"
 #include "support/TestCrowd.h"
 #include "support/ViewerGLTest.h"
 
@@ -7,7 +8,6 @@
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/gpu/buffers/PlacedInstances.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
-#include <osgGpuAnimation/mesh/detail/MeshDetail.h>
 #include <osgGpuAnimation/mesh/draw/PaletteBinding.h>
 #include <osgGpuAnimation/mesh/lod/LodLevels.h>
 #include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
@@ -156,7 +156,7 @@ TEST_F(SharedPosesGLTest, posesAndLevelsTogetherStayWithinThePixelError)
         for (const BindingRecord::Draw& draw : _record->draws)
         {
             if (!draw.placed) continue; // poses of their own
-            const double ofLevel = MeshDetail::levels(mesh(), _crowd->getAnimationSet())->foundError(draw.level);
+            const double ofLevel = madeLevels(mesh(), _crowd->getAnimationSet())->foundError(draw.level);
             for (std::size_t i = draw.first; i < draw.first + draw.count; ++i, ++drawn)
             {
                 const PlacedInstances::Drawn& instance = draw.placed->drawn[i];

@@ -2,8 +2,7 @@
 #include "gltf/ImportedFile.h"
 #include "gltf/LoadedDocument.h"
 #include "serializers/StoredScene.h"
-
-#include <osgGpuAnimation/mesh/detail/MeshDetail.h>
+#include "support/MadeLevels.h"
 
 #include <gtest/gtest.h>
 
@@ -93,7 +92,7 @@ TEST(VariantsTest, clonesShowTheirOwnAndShareTheMeshesOfAVariant)
     const auto& own = dynamic_cast<const SkinnedGeometry&>(meshOf(first));
     const auto& red = dynamic_cast<const SkinnedGeometry&>(meshOf(*second));
     EXPECT_EQ(red.getVertexArray(), own.getVertexArray());
-    EXPECT_EQ(MeshDetail::levels(red, first.getAnimationSet()), MeshDetail::levels(own, first.getAnimationSet()));
+    EXPECT_EQ(madeLevels(red, first.getAnimationSet()), madeLevels(own, first.getAnimationSet()));
     EXPECT_EQ(red.getBoundingBox(), own.getBoundingBox());
 
     ASSERT_TRUE(third->getMeshes().setVariant("red one"));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "mesh/Tube.h"
+#include "support/MadeLevels.h"
 #include "support/ShownSurface.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
@@ -135,7 +136,8 @@ TEST(CharacterLevelsTest, partsOfOneMaterialBecomeOneMesh)
         SCOPED_TRACE(materials.name);
         Arm arm;
         materials.change(arm);
-        const CharacterLevels levels(*arm.meshes, *arm.set);
+        const std::shared_ptr<const CharacterLevels> levelsMade = madeLevels(*arm.meshes, *arm.set);
+        const CharacterLevels& levels = *levelsMade;
         EXPECT_EQ(arm.mergedAt(levels, coarsestOfAll).size(), materials.mergedMeshes);
         EXPECT_EQ(arm.mergedAt(levels, levels.finest() - 1).size(), 0u);
         EXPECT_EQ(arm.mergedAt(levels, LodLevels::allTriangles).size(), 0u);
@@ -196,7 +198,8 @@ TEST(CharacterLevelsTest, otherPartsKeepTheirOwnLevels)
         SCOPED_TRACE(odd.name);
         Arm arm;
         odd.change(*arm.parts[1], *arm.set);
-        const CharacterLevels levels(*arm.meshes, *arm.set);
+        const std::shared_ptr<const CharacterLevels> levelsMade = madeLevels(*arm.meshes, *arm.set);
+        const CharacterLevels& levels = *levelsMade;
         EXPECT_EQ(arm.mergedAt(levels, coarsestOfAll).size(), 1u);
         for (std::size_t part = 0; part < partCount; ++part)
         {
@@ -209,7 +212,8 @@ TEST(CharacterLevelsTest, otherPartsKeepTheirOwnLevels)
 TEST(CharacterLevelsTest, haveFewerTrianglesLevelByLevelAndTheFoundErrorOfAllVertices)
 {
     const Arm arm;
-    const CharacterLevels levels(*arm.meshes, *arm.set);
+    const std::shared_ptr<const CharacterLevels> levelsMade = madeLevels(*arm.meshes, *arm.set);
+    const CharacterLevels& levels = *levelsMade;
     ASSERT_NE(levels.finest(), LodLevels::allTriangles);
     std::vector<PoseInstruction> poses = keyPoses(*arm.set, LodLevels::minPoses);
     const std::size_t keyPoseCount = poses.size();
@@ -277,7 +281,8 @@ TEST(CharacterLevelsTest, noticeWhenTheMeshesAreNoLongerTheSame)
         const auto first = arm.set; // another one must not take its address
         for (const osg::ref_ptr<SkinnedGeometry>& part : arm.parts)
             part->setStateSet(new osg::StateSet); // nothing to merge, which would take time
-        const CharacterLevels levels(*arm.meshes, *arm.set);
+        const std::shared_ptr<const CharacterLevels> levelsMade = madeLevels(*arm.meshes, *arm.set);
+        const CharacterLevels& levels = *levelsMade;
         ASSERT_TRUE(levels.isOf(*arm.meshes, *arm.set));
         arm.meshes->addChild(new osg::Group);
         EXPECT_TRUE(levels.isOf(*arm.meshes, *arm.set)) << "a child without a mesh";
@@ -381,7 +386,8 @@ TEST(CharacterLevelsTest, oddMeshesTakeBoundedTime)
         const osg::ref_ptr<osg::Group> meshes = new osg::Group;
         limit.fill(*meshes, *set);
         const std::clock_t begin = std::clock(); // CPU time: other programs may run
-        const CharacterLevels levels(*meshes, *set);
+        const std::shared_ptr<const CharacterLevels> levelsMade = madeLevels(*meshes, *set);
+        const CharacterLevels& levels = *levelsMade;
         const double seconds = double(std::clock() - begin) / CLOCKS_PER_SEC;
         EXPECT_LT(seconds, 30.0) << "by the square of the vertices it would take minutes";
         EXPECT_EQ(levels.finest() != LodLevels::allTriangles, limit.hasLevels);

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "mesh/Tube.h"
+#include "support/MadeLevels.h"
 #include "support/TestCrowd.h"
 
-#include <osgGpuAnimation/mesh/detail/MeshDetail.h>
 #include <osgGpuAnimation/mesh/lod/LodLevels.h>
 
 #include <cmath>
 #include <ctime>
 #include <limits>
-#include <thread>
 
 namespace osgGpuAnimation
 {
@@ -24,7 +23,9 @@ LodLevels::Skinning skinningOf(const SkinnedGeometry& mesh)
 
 LodLevels levelsOf(const SkinnedGeometry& mesh, const AnimationSet& set)
 {
-    return LodLevels(mesh, set, skinningOf(mesh));
+    LodLevels levels(mesh);
+    levels.addSteps(mesh, set, skinningOf(mesh), nullptr);
+    return levels;
 }
 
 /// The number of drawn indices of the first primitive set.
@@ -75,13 +76,13 @@ TEST(LodLevelsTest, keepAnElbowThatBendsInAClipAndFollowANewSet)
     character->addChild(tube);
     ASSERT_TRUE(character->getMeshes().setPixelError(1.0f));
     const int level = -10; // 1/32; the tube is 1 thick
-    const auto drawnOf = [&](const AnimationSet& set) { return drawn(*tube, *MeshDetail::levels(*tube, set), level); };
+    const auto drawnOf = [&](const AnimationSet& set) { return drawn(*tube, *madeLevels(*tube, set), level); };
     const std::size_t straight = drawnOf(*still);
     EXPECT_LT(straight, 300u) << "straight, it needs but its ends";
     ASSERT_TRUE(character->setAnimationSet(bending));
     EXPECT_GT(drawnOf(*bending), 2 * straight);
     EXPECT_LT(drawnOf(*bending), tube->getPrimitiveSet(0)->getNumIndices() / 4);
-    EXPECT_EQ(drawn(*tube, *MeshDetail::levels(*tube, *bending), LodLevels::allTriangles), trianglesOf(*tube).size());
+    EXPECT_EQ(drawn(*tube, *madeLevels(*tube, *bending), LodLevels::allTriangles), trianglesOf(*tube).size());
     ASSERT_TRUE(character->setAnimationSet(still));
     EXPECT_EQ(drawnOf(*still), straight);
 }
@@ -230,26 +231,18 @@ TEST(LodLevelsTest, takeNoTimeByTheSquareOfTheTrianglesAtAPoint)
     EXPECT_FALSE(has(levelsOf(*tooLarge, *armSet())));
 }
 
-TEST(LodLevelsTest, areMadeOncePerMeshAndAnewWhenItChanges)
+TEST(LodLevelsTest, areNoneAfterTheMeshHasChanged)
 {
     const auto set = armSet();
     const osg::ref_ptr<SkinnedGeometry> tube = makeTube(*set);
-    const MeshLod detail;
-    EXPECT_EQ(detail.known(*tube), nullptr);
-    std::vector<std::shared_ptr<const LodLevels>> seen(4);
-    std::vector<std::thread> threads;
-    for (std::shared_ptr<const LodLevels>& levels : seen)
-        threads.emplace_back([&] { levels = detail.of(*tube, *set, skinningOf(*tube)); });
-    for (std::thread& thread : threads)
-        thread.join();
-    for (const std::shared_ptr<const LodLevels>& levels : seen)
-        EXPECT_EQ(levels, seen.front());
-    EXPECT_EQ(detail.known(*tube), seen.front());
+    EXPECT_EQ(MeshDetail::findLevels(*tube), nullptr);
+    const std::shared_ptr<const LodLevels> first = madeLevels(*tube, *set);
+    EXPECT_EQ(MeshDetail::findLevels(*tube), first);
     tube->getVertexArray()->dirty();
-    EXPECT_EQ(detail.known(*tube), nullptr);
-    EXPECT_NE(detail.of(*tube, *set, skinningOf(*tube)), seen.front());
+    EXPECT_EQ(MeshDetail::findLevels(*tube), nullptr);
+    EXPECT_NE(madeLevels(*tube, *set), first);
     tube->getPrimitiveSet(0)->dirty();
-    EXPECT_EQ(detail.known(*tube), nullptr);
+    EXPECT_EQ(MeshDetail::findLevels(*tube), nullptr);
 }
 
 template <typename Animated>

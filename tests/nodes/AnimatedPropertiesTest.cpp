@@ -62,7 +62,7 @@ osg::ref_ptr<osg::StateSet> makeMaterial()
 {
     osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
     state->addUniform(new osg::Uniform("baseColorFactor", osg::Vec4(1, 0, 0, 1)));
-    markMaterial(*state, 0);
+    state->setUserValue(materialMark, 0);
     return state;
 }
 
@@ -115,14 +115,14 @@ public:
         character = new AnimatedCharacter(propertySet(ones));
         character->addChild(makeTube(character->getAnimationSet()));
         character->getChild(0)->setStateSet(material);
-        markMaterial(*material, 0);
+        material->setUserValue(materialMark, 0);
         lamp->setLight(new PunctualLight(PunctualLight::Kind::Spot, 3));
         lamp->getLight()->setSpecular(osg::Vec4(1, 1, 1, 1));
-        markLight(*lamp, 1);
+        lamp->setUserValue(lightMark, 1);
         markVisibility(*lamp, {5, 6});
         character->addChild(lamp);
         camera->setUserValue(orthographicHeightName, 6.0);
-        markCamera(*camera, 2);
+        camera->setUserValue(cameraMark, 2);
         character->addChild(camera);
     }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "mesh/Tube.h"
+#include "support/MadeLevels.h"
 
 #include <osgGpuAnimation/frame/stage/LodSelection.h>
 #include <osgGpuAnimation/mesh/detail/MeshDetail.h>
@@ -87,7 +88,8 @@ TEST(BackgroundLevelsTest, areThoseThatOneThreadMakes)
     TubeCrowd tubes, once;
     ASSERT_TRUE(tubes.crowd->getMeshes().setPixelError(0.5f));
     ASSERT_TRUE(tubes.getsLevels());
-    const CharacterLevels expected(*once.crowd, *once.set);
+    const std::shared_ptr<const CharacterLevels> expectedMade = madeLevels(*once.crowd, *once.set);
+    const CharacterLevels& expected = *expectedMade;
     const CharacterLevels& found = *CrowdDetail::levels(*tubes.crowd);
     ASSERT_EQ(found.merged().size(), expected.merged().size());
     ASSERT_EQ(found.merged()[0].steps.size(), expected.merged()[0].steps.size());

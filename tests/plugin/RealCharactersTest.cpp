@@ -4,6 +4,7 @@
 #include "gltf/ModelImport.h"
 #include "plugin/PluginFolder.h"
 #include "plugin/SharedAssets.h"
+#include "support/MadeLevels.h"
 #include "support/RandomSet.h"
 #include "support/ShownSurface.h"
 
@@ -142,7 +143,7 @@ TEST_P(CharacterLevelsOfModelsTest, stayWithinTheirErrorAtRandomTimes)
     ImportedModel model;
     importOrSkip(GetParam(), model);
     if (IsSkipped() || HasFatalFailure()) return;
-    const auto levels = std::make_shared<const CharacterLevels>(*model.character, *model.set);
+    const auto levels = madeLevels(*model.character, *model.set);
     ASSERT_NE(levels->finest(), LodLevels::allTriangles);
     const LodRange range(*model.character, *model.set, levels); // of what the meshes are at a level: merged or not
     std::mt19937 random(23);

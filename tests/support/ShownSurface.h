@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "support/MadeLevels.h"
+
 #include <osgGpuAnimation/authoring/mesh/MeshConnectivity.h>
 #include <osgGpuAnimation/frame/stage/LodSelection.h>
-#include <osgGpuAnimation/mesh/detail/MeshDetail.h>
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 
 #include <glm/geometric.hpp>
@@ -38,7 +39,7 @@ public:
         {
             const bool isPart = parts.count(&mesh) > 0;
             if (isPart && !isShown(mesh)) return;
-            add(mesh, isPart ? MeshDetail::levels(mesh, set).get() : nullptr, level, palette);
+            add(mesh, isPart ? madeLevels(mesh, set).get() : nullptr, level, palette);
         };
         if (merged)
             merged->forEachMeshAt(level, meshes, show);

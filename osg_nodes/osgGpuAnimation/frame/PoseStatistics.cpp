@@ -47,11 +47,6 @@ void addLinesTo(osgViewer::StatsHandler& handler)
 
 } // namespace
 
-PoseStatistics::PoseStatistics(const PoseStatistics& other, const osg::CopyOp& copyop)
-    : osg::Object(other, copyop), osg::Callback(other, copyop), osgGA::GUIEventHandler(other, copyop)
-{
-}
-
 bool PoseStatistics::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdapter& action, osg::Object*,
                             osg::NodeVisitor*)
 {

@@ -33,7 +33,10 @@ public:
 
     PoseStatistics() = default;
     /// A copy; the object has no state.
-    PoseStatistics(const PoseStatistics& other, const osg::CopyOp& copyop);
+    PoseStatistics(const PoseStatistics& other, const osg::CopyOp& copyop)
+        : osg::Object(other, copyop), osg::Callback(other, copyop), osgGA::GUIEventHandler(other, copyop)
+    {
+    }
     META_Object(osgGpuAnimation, PoseStatistics)
 
     using osgGA::GUIEventHandler::handle;

@@ -12,10 +12,6 @@
 
 #include <algorithm>
 
-#ifndef GL_RASTERIZER_DISCARD
-#define GL_RASTERIZER_DISCARD 0x8C89
-#endif
-
 namespace osgGpuAnimation
 {
 
@@ -118,11 +114,6 @@ FeedbackPass::Uniform& FeedbackPass::find(const char* uniform)
     const auto [known, isNew] = _uniforms.try_emplace(uniform);
     if (isNew) known->second.location = _gl->glGetUniformLocation(_program, uniform);
     return known->second;
-}
-
-void FeedbackPass::use()
-{
-    _gl->glUseProgram(_program);
 }
 
 bool FeedbackPass::setInt(const char* uniform, int value)

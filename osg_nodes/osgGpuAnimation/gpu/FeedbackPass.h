@@ -101,7 +101,7 @@ public:
     bool valid() const { return _program != 0; }
 
     /// Makes the program current. Call it before the functions below.
-    void use();
+    void use() { _gl->glUseProgram(_program); }
     /// Sets an int uniform. False if the program does not use it.
     bool setInt(const char* uniform, int value);
     /// Sets an array. values: one or more.

@@ -7,8 +7,6 @@
 
 #include <layout.glsl>
 
-#include <glm/geometric.hpp>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 
+#include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/gpu/buffers/AnimationBuffers.h>
 #include <osgGpuAnimation/gpu/buffers/PosePalette.h>
 #include <osgGpuAnimation/gpu/detail/Renderer.h>
-#include <osgGpuAnimation/gpu/passes/CpuEvaluation.h>
 #include <osgGpuAnimation/gpu/passes/FusedEvaluation.h>
-#include <osgGpuAnimation/gpu/passes/SeparateEvaluation.h>
 
 #include <layout.glsl>
 
@@ -19,10 +18,6 @@
 #include <numeric>
 #include <optional>
 #include <string>
-
-#ifndef GL_MAX_TEXTURE_BUFFER_SIZE
-#define GL_MAX_TEXTURE_BUFFER_SIZE 0x8C2B
-#endif
 
 namespace osgGpuAnimation
 {
@@ -82,6 +77,72 @@ std::size_t maxTexelsOfContext()
     return static_cast<std::size_t>(std::max(limit, 0));
 }
 
+/// The separate form: mix, local, world, one draw each; the world stage multiplies along the ancestors. It is the
+/// readable form of the stages, without constraints. False: a pass does not compile.
+bool evaluateSeparately(EvaluationContext& context, FeedbackScope& scope, const PoseBatch& batch,
+                        const AnimationBuffers& buffers, PosePalette::Chunk& chunk)
+{
+    const AnimationSet& set = batch.set();
+    const std::size_t trackVertices = set.trackCount() * chunk.width;
+    context.mixedTracks.reserve(trackVertices * sizeof(JointTransform));
+    context.scratch.reserve(trackVertices * EvaluationContext::matrixBytes);
+    const auto run = [&](FeedbackPass& pass, std::size_t count, const BufferTexture& out)
+    {
+        pass.run(0, count, out.buffer(), 0);
+        ++context.draws;
+    };
+
+    PoseVariant variant = PoseVariant::of(batch, buffers.isModest());
+    variant.setMotion(buffers.anyTrack());
+    variant.translationMotion = std::max(variant.translationMotion, PartMotion::Constant);
+    variant.scaleMotion = std::max(variant.scaleMotion, PartMotion::Constant);
+    using Stage = EvaluationContext::Stage;
+    FeedbackPass &mix = context.pass(Stage::Mix, variant), &local = context.pass(Stage::Local),
+                 &world = context.pass(Stage::World);
+    if (!mix.valid() || !local.valid() || !world.valid()) return false;
+    context.useMixInput(scope, mix, set, buffers, chunk);
+    run(mix, trackVertices, context.mixedTracks);
+
+    local.use();
+    local.setTexture(scope, "mixedTracks", unitPrevious, context.mixedTracks.texture());
+    local.setInt("instanceCount", static_cast<int>(chunk.width));
+    local.setInt("jointCount", static_cast<int>(set.skeleton().jointCount()));
+    run(local, trackVertices, context.scratch);
+
+    world.use();
+    world.setInt("instanceCount", static_cast<int>(chunk.width));
+    world.setTexture(scope, "entries", unitEntries, buffers.entries().texture());
+    world.setTexture(scope, "roots", unitRoots, chunk.roots.texture());
+    world.setInt("rootCount", static_cast<int>(chunk.uploadedRootMatrices.size()));
+    world.setTexture(scope, "localMatrices", unitPrevious, context.scratch.texture());
+    run(world, set.paletteSize() * chunk.width, chunk.palette);
+    return true;
+}
+
+/// The CPU twin in place of all passes: computes the palettes of the chunk's instances and uploads them. memory: kept
+/// from call to call.
+void evaluateOnCpu(const PoseBatch& batch, PosePalette::Chunk& chunk, std::vector<AffineMatrix>& memory)
+{
+    const AnimationSet& set = batch.set();
+    const std::vector<AffineMatrix>& roots = chunk.uploadedRootMatrices;
+    const std::size_t targetStride = chunk.uploadedTargets.size() / chunk.size;
+    memory.resize(set.paletteSize() * chunk.width);
+    std::vector<AffineMatrix> palette;
+    for (std::size_t instance = 0; instance < chunk.size; ++instance)
+    {
+        Pose::BatchedPose pose;
+        pose.samples = &chunk.uploadedSamples[instance * chunk.sampleStride];
+        pose.sampleCount = chunk.sampleStride;
+        pose.posed = batch.posed().data();
+        if (targetStride > 0) pose.targets = &chunk.uploadedTargets[instance * targetStride];
+        const AffineMatrix root = roots.empty() ? AffineMatrix() : roots[roots.size() == 1 ? 0 : instance];
+        Pose::evaluate(set, pose, root, palette);
+        for (std::size_t entry = 0; entry < palette.size(); ++entry)
+            memory[entry * chunk.width + instance] = palette[entry];
+    }
+    chunk.palette.upload(memory.data(), memory.size() * sizeof(AffineMatrix));
+}
+
 } // namespace
 
 struct PosePipeline::Parts
@@ -95,6 +156,7 @@ struct PosePipeline::Parts
     bool isSeparate(const PoseBatch& batch, const std::vector<PosePalette::Chunk*>& chunks) const;
     bool mayBeSeparate(const AnimationSet& set, std::size_t instances) const;
     SetResources& resourcesOf(const PoseBatch& batch);
+    const PosePalette* find(const AnimationSet& set, std::size_t slot) const;
 
     const Options& options;
     EvaluationContext context;
@@ -289,18 +351,24 @@ bool PosePipeline::Parts::hasRoomForMasks(SetResources& resources, const PoseBat
     return false;
 }
 
+/// Null: there is none.
+const PosePalette* PosePipeline::Parts::find(const AnimationSet& set, std::size_t slot) const
+{
+    const auto known = sets.find(&set);
+    const bool isKnown = known != sets.end() && slot < known->second.palettes.size();
+    return isKnown ? known->second.palettes[slot].get() : nullptr;
+}
+
 PalettePlace PosePipeline::place(const AnimationSet& set, std::size_t slot, std::size_t instance) const
 {
-    const auto known = _parts->sets.find(&set);
-    if (known == _parts->sets.end() || slot >= known->second.palettes.size()) return {};
-    return known->second.palettes[slot]->place(instance);
+    const PosePalette* palette = _parts->find(set, slot);
+    return palette ? palette->place(instance) : PalettePlace();
 }
 
 AffineMatrix PosePipeline::rootMatrix(const AnimationSet& set, std::size_t slot, std::size_t instance) const
 {
-    const auto known = _parts->sets.find(&set);
-    if (known == _parts->sets.end() || slot >= known->second.palettes.size()) return {};
-    return known->second.palettes[slot]->rootMatrix(instance);
+    const PosePalette* palette = _parts->find(set, slot);
+    return palette ? palette->rootMatrix(instance) : AffineMatrix();
 }
 
 std::vector<AffineMatrix> PosePipeline::readPalette(osg::State& state, const AnimationSet& set, std::size_t slot,
@@ -309,7 +377,7 @@ std::vector<AffineMatrix> PosePipeline::readPalette(osg::State& state, const Ani
     const PalettePlace where = place(set, slot, instance);
     std::vector<AffineMatrix> entries(where.texture == 0 ? 0 : set.paletteSize());
     if (entries.empty()) return entries;
-    const auto& palette = *_parts->sets.at(&set).palettes[slot];
+    const PosePalette& palette = *_parts->find(set, slot);
     for (const std::unique_ptr<PosePalette::Chunk>& chunk : palette.chunks())
         if (chunk->palette.texture() == where.texture)
             _parts->context.gl->glBindBuffer(GL_TEXTURE_BUFFER, chunk->palette.buffer());

@@ -16,30 +16,9 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// GLSL 1.40 is enough for skinning and, in a compatibility context, keeps the names of the fixed pipeline.
-osg::ref_ptr<osg::Shader> makeSkinShader()
-{
-    return new osg::Shader(osg::Shader::VERTEX,
-                           std::string("#version 140\n") + shaders::layout_glsl + shaders::skin_glsl);
-}
-
-osg::ref_ptr<osg::Shader> makeSurfaceVertexShader()
-{
-    const std::string text = shaders::version_glsl + std::string("#define DRAW_SKINNED 1\n#define DRAW_COLOR 1\n") +
-                             "#define DRAW_TEXTURE_MATRIX 0\n#define DRAW_CLIP_PLANES 0\n" + shaders::color_glsl +
-                             shaders::character_vert;
-    return new osg::Shader(osg::Shader::VERTEX, text);
-}
-
 // The kit's own program gets the colours of the applied osg::Material instead.
 constexpr const char* materialColors = "#define materialDiffuse baseColorFactor\n"
                                        "#define materialEmission emissiveFactor\n";
-
-osg::ref_ptr<osg::Shader> makeMaterialShader()
-{
-    return new osg::Shader(osg::Shader::FRAGMENT,
-                           std::string("#version 140\n") + materialColors + shaders::material_glsl);
-}
 
 osg::ref_ptr<osg::Shader> makeLightShader(bool isCore)
 {
@@ -61,18 +40,10 @@ osg::ref_ptr<osg::Shader> makeLightShader(bool isCore)
     return new osg::Shader(osg::Shader::FRAGMENT, text);
 }
 
-osg::ref_ptr<osg::Program> makeCharacterProgram()
+osg::ref_ptr<osg::Program> makeProgram(const char* name, osg::Shader* skin)
 {
-    osg::ref_ptr<osg::Program> program = new ShaderPermutations(skinShader());
-    program->setName("osgGpuAnimation character");
-    bindSkinAttributes(*program);
-    return program;
-}
-
-osg::ref_ptr<osg::Program> makeSurfaceProgram()
-{
-    osg::ref_ptr<osg::Program> program = new ShaderPermutations;
-    program->setName("osgGpuAnimation surface");
+    osg::ref_ptr<osg::Program> program = new ShaderPermutations(skin);
+    program->setName(name);
     bindSkinAttributes(*program);
     return program;
 }
@@ -90,19 +61,29 @@ void applyProgram(osg::StateSet& stateSet, osg::Program* program, osg::StateAttr
 osg::ref_ptr<osg::Shader> skinShader()
 {
     static SharedObject<osg::Shader> shared;
-    return shared.get(makeSkinShader);
+    // GLSL 1.40 is enough for skinning and, in a compatibility context, keeps the names of the fixed pipeline.
+    const auto make = []
+    {
+        return new osg::Shader(osg::Shader::VERTEX,
+                               std::string("#version 140\n") + shaders::layout_glsl + shaders::skin_glsl);
+    };
+    return shared.get(make);
 }
 
 osg::ref_ptr<osg::Shader> surfaceVertexShader()
 {
     static SharedObject<osg::Shader> shared;
-    return shared.get(makeSurfaceVertexShader);
+    const std::string text = shaders::version_glsl + std::string("#define DRAW_SKINNED 1\n#define DRAW_COLOR 1\n") +
+                             "#define DRAW_TEXTURE_MATRIX 0\n#define DRAW_CLIP_PLANES 0\n" + shaders::color_glsl +
+                             shaders::character_vert;
+    return shared.get([&] { return new osg::Shader(osg::Shader::VERTEX, text); });
 }
 
 osg::ref_ptr<osg::Shader> materialShader()
 {
     static SharedObject<osg::Shader> shared;
-    return shared.get(makeMaterialShader);
+    const std::string text = std::string("#version 140\n") + materialColors + shaders::material_glsl;
+    return shared.get([&] { return new osg::Shader(osg::Shader::FRAGMENT, text); });
 }
 
 osg::ref_ptr<osg::Shader> lightShader(bool isCore)
@@ -134,7 +115,7 @@ void bindSkinAttributes(osg::Program& program)
 osg::ref_ptr<osg::Program> characterProgram()
 {
     static SharedObject<osg::Program> shared;
-    return shared.get(makeCharacterProgram);
+    return shared.get([] { return makeProgram("osgGpuAnimation character", skinShader()); });
 }
 
 void applyCharacterProgram(osg::StateSet& stateSet)
@@ -148,7 +129,7 @@ void applyCharacterProgram(osg::StateSet& stateSet)
 osg::ref_ptr<osg::Program> surfaceProgram()
 {
     static SharedObject<osg::Program> shared;
-    return shared.get(makeSurfaceProgram);
+    return shared.get([] { return makeProgram("osgGpuAnimation surface", nullptr); });
 }
 
 void applySurfaceProgram(osg::StateSet& stateSet, bool colored)

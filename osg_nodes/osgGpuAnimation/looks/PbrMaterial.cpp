@@ -34,7 +34,7 @@ struct MapSlot
     PbrMaterial::Map PbrMaterial::*map;
     const char* sampler;
     const char* define;
-    int unit;
+    int unit = 0; ///< of an extension: the next one from EXTENSION_MAPS_UNIT on if the map has an effect
 };
 
 constexpr MapSlot coreMaps[] = {
@@ -45,15 +45,7 @@ constexpr MapSlot coreMaps[] = {
     {&PbrMaterial::emissiveMap, "emissiveTexture", "MATERIAL_EMISSIVE_MAP", EMISSIVE_UNIT},
 };
 
-/// A map of an extension, which has the next texture unit from EXTENSION_MAPS_UNIT on if it has an effect.
-struct ExtensionMapSlot
-{
-    PbrMaterial::Map PbrMaterial::*map;
-    const char* sampler;
-    const char* define;
-};
-
-constexpr ExtensionMapSlot extensionMaps[] = {
+constexpr MapSlot extensionMaps[] = {
     {&PbrMaterial::specularColorMap, "specularColorTexture", "MATERIAL_SPECULAR_COLOR_MAP"},
     {&PbrMaterial::clearcoatMap, "clearcoatTexture", "MATERIAL_CLEARCOAT_MAP"},
     {&PbrMaterial::clearcoatRoughnessMap, "clearcoatRoughnessTexture", "MATERIAL_CLEARCOAT_ROUGHNESS_MAP"},
@@ -84,7 +76,7 @@ void removePbrMaterial(osg::StateSet& stateSet)
         if (hasDefine(stateSet, slot.define))
             stateSet.removeTextureAttribute(static_cast<unsigned int>(slot.unit), osg::StateAttribute::TEXTURE);
     unsigned int unit = EXTENSION_MAPS_UNIT;
-    for (const ExtensionMapSlot& slot : extensionMaps)
+    for (const MapSlot& slot : extensionMaps)
         if (hasDefine(stateSet, slot.define)) stateSet.removeTextureAttribute(unit++, osg::StateAttribute::TEXTURE);
     std::vector<std::string> defines;
     for (const auto& define : stateSet.getDefineList())
@@ -140,7 +132,7 @@ void readExtensions(const osg::StateSet& stateSet, PbrMaterial& material)
     material.isSpecularGlossiness = hasDefine(stateSet, "MATERIAL_GLOSSINESS");
     material.isBlended = hasDefine(stateSet, "MATERIAL_BLENDED");
     unsigned int unit = EXTENSION_MAPS_UNIT;
-    for (const ExtensionMapSlot& slot : extensionMaps)
+    for (const MapSlot& slot : extensionMaps)
         if (hasDefine(stateSet, slot.define)) material.*slot.map = mapAt(stateSet, unit++, slot.define);
 }
 
@@ -157,7 +149,7 @@ void setMap(osg::StateSet& stateSet, const PbrMaterial::Map& map, int unit, cons
 void setExtensionMaps(osg::StateSet& stateSet, const PbrMaterial& material)
 {
     int used = 0;
-    for (const ExtensionMapSlot& slot : extensionMaps)
+    for (const MapSlot& slot : extensionMaps)
         if ((material.*slot.map).texture && material.hasEffect(slot.map) && used < PbrMaterial::maxExtensionMaps)
             setMap(stateSet, material.*slot.map, EXTENSION_MAPS_UNIT + used++, slot.sampler, slot.define);
 }

@@ -8,7 +8,6 @@
 #include <osg/TextureBuffer>
 #include <osgUtil/CullVisitor>
 
-#include <array>
 #include <atomic>
 #include <memory>
 #include <vector>

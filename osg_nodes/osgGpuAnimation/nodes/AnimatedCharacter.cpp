@@ -2,7 +2,6 @@
 #include <osgGpuAnimation/mesh/detail/MeshDetail.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 
-#include <osgGpuAnimation/animation/bounds/MixBounds.h>
 #include <osgGpuAnimation/animation/detail/ControllerDetail.h>
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/frame/characters/FirstDraw.h>
@@ -92,7 +91,7 @@ AnimatedCharacter::AnimatedCharacter(std::shared_ptr<const AnimationSet> set)
 
 AnimatedCharacter::AnimatedCharacter(const AnimatedCharacter& other, const osg::CopyOp& copyop)
     : osg::MatrixTransform(other, copyop), _controller(std::make_unique<AnimationController>(*other._controller)),
-      _axes(other._axes), _clipBounds(other._clipBounds), _mixBounds(other._mixBounds), _updateTime(other._updateTime),
+      _axes(other._axes), _clipBoxes(other._clipBoxes), _updateTime(other._updateTime),
       _worldTargets(std::make_unique<WorldTargets>(*other._worldTargets)), _isDrawnTogether(other._isDrawnTogether),
       _meshes(*this, _controller->sharedSet(), _controller.get()), _wardrobe(other._wardrobe)
 {
@@ -113,7 +112,7 @@ Result<void> AnimatedCharacter::setAnimationSet(std::shared_ptr<const AnimationS
                      " palette entries for the meshes of one of " + std::to_string(getAnimationSet().paletteSize())};
     *_controller = AnimationController(std::move(newSet), *_controller);
     _meshes.forgetProperties();
-    if (_clipBounds) computeClipBounds();
+    if (_clipBoxes) computeClipBounds();
     // The levels of detail depend on the poses of the clips.
     if (!isFirst) forEachMeshBelow(*this, [](SkinnedGeometry& mesh) { MeshDetail::forgetLevels(mesh); });
     return _meshes.setPixelError(_meshes.getPixelError());
@@ -148,7 +147,7 @@ Result<WornGarment> AnimatedCharacter::wear(osg::Node* garment)
         addChild(mesh);
     _meshes.showVariant();
     useOutfit(fitted.value().set);
-    return WornGarment{fitted.value().addedEntries, fitted.value().followed, fitted.value().leftOut};
+    return WornGarment(fitted.value());
 }
 
 /// identifier: of a garment; empty: none.
@@ -183,11 +182,9 @@ Result<void> AnimatedCharacter::takeOff(const osg::Node* garment)
 void AnimatedCharacter::useOutfit(const std::shared_ptr<const AnimationSet>& set)
 {
     if (set != _controller->sharedSet()) *_controller = AnimationController(set, *_controller);
-    if (_clipBounds)
+    if (_clipBoxes)
     {
-        const ClipBoxes boxes = _wardrobe->boxes(meshesBelow(*this), set);
-        _clipBounds = boxes.ofClips;
-        _mixBounds = boxes.ofMixes;
+        _clipBoxes = _wardrobe->boxes(meshesBelow(*this), set);
         growMeshes(boundsOfAllClips());
         _played.clear();
         dirtyBound();
@@ -200,7 +197,7 @@ Result<void> AnimatedCharacter::setFileToNode(const osg::Matrixd& fileToNode)
     const Result<AffineMatrix> root = toRootMatrix(fileToNode, "the transform from the file's axes", true);
     if (!root) return root.error();
     _axes = std::make_shared<const Axes>(Axes{fileToNode, root.value()});
-    if (_clipBounds) setMeshBounds();
+    if (_clipBoxes) setMeshBounds();
     return {};
 }
 
@@ -257,7 +254,7 @@ void AnimatedCharacter::updateBounds()
     std::swap(_played, _playedNow);
     _constraints = constraints;
     dirtyBound();
-    if (_mixBounds) growMeshes(boundsOf(_played));
+    if (_clipBoxes) growMeshes(boundsOf(_played));
 }
 
 // The boxes of the meshes already contain each single clip. Clones share the meshes, so a larger box serves them all.
@@ -274,17 +271,16 @@ void AnimatedCharacter::growMeshes(const osg::BoundingBox& box)
 
 void AnimatedCharacter::computeClipBounds()
 {
-    const ClipBoxes boxes(meshesBelow(*this), getAnimationSet());
-    _clipBounds = boxes.ofClips;
-    _mixBounds = boxes.ofMixes;
+    _clipBoxes =
+        std::make_shared<const ClipBoxes>(getAnimationSet(), mixBoxesOf(meshesBelow(*this), getAnimationSet()));
     setMeshBounds();
 }
 
 osg::BoundingBox AnimatedCharacter::boundsOfAllClips() const
 {
     osg::BoundingBox all;
-    for (const osg::BoundingBox& box : *_clipBounds)
-        all.expandBy(transformed(box, _axes->fileToNode));
+    for (const Box& box : _clipBoxes->ofClips)
+        all.expandBy(transformed(toOsg(box), _axes->fileToNode));
     return all;
 }
 
@@ -298,13 +294,9 @@ void AnimatedCharacter::setMeshBounds()
 
 osg::BoundingBox AnimatedCharacter::getClipBounds(int clip) const
 {
-    return transformed(clipBoundsInFile(clip), _axes->fileToNode);
-}
-
-osg::BoundingBox AnimatedCharacter::clipBoundsInFile(int clip) const
-{
     const std::size_t index = static_cast<std::size_t>(clip + 1);
-    return _clipBounds && index < _clipBounds->size() ? (*_clipBounds)[index] : osg::BoundingBox();
+    if (!_clipBoxes || index >= _clipBoxes->ofClips.size()) return {};
+    return transformed(toOsg(_clipBoxes->ofClips[index]), _axes->fileToNode);
 }
 
 osg::ref_ptr<osg::Geometry> AnimatedCharacter::getPosedMesh(const SkinnedGeometry& mesh, bool withNormals) const
@@ -384,8 +376,8 @@ osg::BoundingBox AnimatedCharacter::boundsOf(const std::vector<PlayedClip>& play
 {
     const std::uint64_t constraints = constraintsOf(*_controller);
     const bool isAlone = played.size() == 1 && played.front().part == PlayedClip::Part::Mixed && constraints == 0;
-    if (isAlone || !_mixBounds) return getClipBounds(isAlone ? played.front().clip : _controller->clip());
-    return transformed(toOsg(_mixBounds->box(played, constraints)), _axes->fileToNode);
+    if (isAlone || !_clipBoxes) return getClipBounds(isAlone ? played.front().clip : _controller->clip());
+    return transformed(toOsg(_clipBoxes->ofMixes.box(played, constraints)), _axes->fileToNode);
 }
 
 osg::BoundingBox AnimatedCharacter::getCurrentBounds() const

@@ -23,7 +23,7 @@
 namespace osgGpuAnimation
 {
 
-class MixBounds;
+struct ClipBoxes;
 struct DrawnCharacter;
 class PosedMeshes;
 class Wardrobe;
@@ -179,7 +179,6 @@ private:
     bool cullTogether(osgUtil::CullVisitor& visitor);
     bool wears(const std::string& identifier) const;
     void useOutfit(const std::shared_ptr<const AnimationSet>& set);
-    osg::BoundingBox clipBoundsInFile(int clip) const;
     osg::BoundingBox boundsOfAllClips() const;
     void setMeshBounds();
     void updateBounds();
@@ -188,10 +187,8 @@ private:
     void growMeshes(const osg::BoundingBox& box);
 
     std::unique_ptr<AnimationController> _controller;
-    std::shared_ptr<const Axes> _axes; ///< never null, shared with clones
-    /// rest pose, then one per clip, in the file's axes
-    std::shared_ptr<const std::vector<osg::BoundingBox>> _clipBounds;
-    std::shared_ptr<const MixBounds> _mixBounds;       ///< null if _clipBounds is null
+    std::shared_ptr<const Axes> _axes;                 ///< never null, shared with clones
+    std::shared_ptr<const ClipBoxes> _clipBoxes;       ///< null before computeClipBounds()
     std::optional<double> _updateTime;                 ///< seconds of simulation time
     std::unique_ptr<WorldTargets> _worldTargets;       ///< never null
     std::vector<PlayedClip> _played;                   ///< the clips at the last dirtyBound()

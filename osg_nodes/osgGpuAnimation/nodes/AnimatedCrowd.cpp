@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
-#include <osgGpuAnimation/animation/bounds/MixBounds.h>
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/animation/StateMachine.h>
 #include <osgGpuAnimation/frame/crowd/CrowdBatches.h>
@@ -69,12 +68,10 @@ AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character)
     if (character.getStateSet()) setStateSet(const_cast<osg::StateSet*>(character.getStateSet()));
     addUnanimated(character, getAnimationSet(), *this);
     const bool hasStillParts = StillParts::addTo(*this, character); // which the character's bounds do not include
-    std::vector<Box> bounds;
-    for (int clip = -1; clip < static_cast<int>(getAnimationSet().clips().size()); ++clip)
-        bounds.push_back(toBox(character.clipBoundsInFile(clip)));
-    const bool areKnown = std::any_of(bounds.begin(), bounds.end(), [](const Box& box) { return !box.empty(); });
-    if (areKnown && !hasStillParts)
-        _instances->setClipBounds(bounds, character._mixBounds);
+    const std::shared_ptr<const ClipBoxes>& known = character._clipBoxes;
+    const auto isSolid = [](const Box& box) { return !box.empty(); };
+    if (known && !hasStillParts && std::any_of(known->ofClips.begin(), known->ofClips.end(), isSolid))
+        _instances->setClipBounds(known->ofClips, {known, &known->ofMixes});
     else
         computeBounds();
 }
@@ -99,9 +96,8 @@ void AnimatedCrowd::computeBounds()
     const AnimationSet& set = getAnimationSet();
     std::vector<const SkinnedGeometry*> meshes;
     forEachMesh(_meshes.drawn(), [&](const SkinnedGeometry& mesh) { meshes.push_back(&mesh); });
-    MixBounds::Boxes boxes = mixBoxesOf(meshes, set);
-    const std::vector<Box> bounds = boundsOfClips(set, boxes.ofClips);
-    _instances->setClipBounds(bounds, std::make_shared<const MixBounds>(set, std::move(boxes)));
+    const auto boxes = std::make_shared<const ClipBoxes>(set, mixBoxesOf(meshes, set));
+    _instances->setClipBounds(boxes->ofClips, {boxes, &boxes->ofMixes});
 }
 
 bool AnimatedCrowd::contains(Instance instance) const

@@ -12,7 +12,6 @@
 #include <cmath>
 #include <iostream>
 #include <mutex>
-#include <utility>
 #include <vector>
 
 namespace osgGpuAnimation
@@ -20,12 +19,6 @@ namespace osgGpuAnimation
 
 namespace
 {
-
-constexpr std::pair<const char*, const char*> keyHelp[] = {
-    {"n", "next clip"},  {"N", "previous clip"},     {"k", "pause, resume"},
-    {".", "a frame on"}, {",", "a frame back"},      {"-", "slower"},
-    {"+", "faster"},     {"r", "run the other way"}, {"j", "joints on, off"},
-};
 
 constexpr double frameSeconds = 1.0 / 30.0;
 constexpr double speedFactor = 1.25;
@@ -82,6 +75,42 @@ void multiplySpeed(AnimationController& controller, double factor)
     OSG_NOTICE << "speed " << controller.layer(0).settings().speed << std::endl;
 }
 
+void changeClip(AnimationController& controller, int step, double fadeSeconds)
+{
+    const std::vector<Clip>& clips = controller.set().clips();
+    const int count = static_cast<int>(clips.size());
+    if (count == 0) return;
+    const int clip = controller.clip() < 0 ? 0 : (controller.clip() + step + count) % count;
+    // Fades do not advance while paused: show the next clip immediately and stay paused.
+    const bool isPaused = controller.state() == PlayState::Paused;
+    const bool isShown =
+        static_cast<bool>(controller.crossfade(static_cast<std::size_t>(clip), isPaused ? 0.0 : fadeSeconds));
+    if (isPaused) controller.pause();
+    if (isShown)
+        OSG_NOTICE << "clip \"" << clips[static_cast<std::size_t>(clip)].name() << "\", " << clip + 1 << " of " << count
+                   << std::endl;
+}
+
+struct Key
+{
+    char key;
+    const char* effect;
+    void (*press)(AnimatedCharacter& character, AnimationController& controller, double fadeSeconds);
+};
+
+const Key keys[] = {
+    {'n', "next clip", [](auto&, auto& controller, double fade) { changeClip(controller, 1, fade); }},
+    {'N', "previous clip", [](auto&, auto& controller, double fade) { changeClip(controller, -1, fade); }},
+    {'k', "pause, resume", [](auto&, auto& controller, double) { setPaused(controller, isAnyPlaying(controller)); }},
+    {'.', "a frame on", [](auto&, auto& controller, double) { step(controller, frameSeconds); }},
+    {',', "a frame back", [](auto&, auto& controller, double) { step(controller, -frameSeconds); }},
+    {'-', "slower", [](auto&, auto& controller, double) { multiplySpeed(controller, 1.0 / speedFactor); }},
+    {'+', "faster", [](auto&, auto& controller, double) { multiplySpeed(controller, speedFactor); }},
+    {'r', "run the other way", [](auto&, auto& controller, double) { multiplySpeed(controller, -1.0); }},
+    {'j', "joints on, off",
+     [](auto& character, auto&, double) { showJointLines(character, !hasJointLines(character)); }},
+};
+
 void printKeysOnce()
 {
     static std::once_flag isPrinted;
@@ -89,20 +118,14 @@ void printKeysOnce()
                    []
                    {
                        std::string text;
-                       for (const auto& [key, effect] : keyHelp)
-                           text += (text.empty() ? "" : "; ") + std::string(key) + " " + effect;
+                       for (const Key& key : keys)
+                           text += (text.empty() ? "" : "; ") + std::string(1, key.key) + " " + key.effect;
                        if (osg::isNotifyEnabled(osg::NOTICE))
                            std::cout << "Keys of animated characters: " << text << std::endl;
                    });
 }
 
 } // namespace
-
-CharacterKeys::CharacterKeys(const CharacterKeys& other, const osg::CopyOp& copyop)
-    : osg::Object(other, copyop), osg::Callback(other, copyop), osgGA::GUIEventHandler(other, copyop),
-      _fadeSeconds(other._fadeSeconds)
-{
-}
 
 bool CharacterKeys::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdapter& action, osg::Object* object,
                            osg::NodeVisitor*)
@@ -146,64 +169,19 @@ bool CharacterKeys::isFirstTime(const osgGA::GUIEventAdapter& event, const osg::
 
 void CharacterKeys::getUsage(osg::ApplicationUsage& usage) const
 {
-    for (const auto& [key, effect] : keyHelp)
-        usage.addKeyboardMouseBinding(key, std::string("Animated characters: ") + effect);
-}
-
-void CharacterKeys::changeClip(AnimationController& controller, int step) const
-{
-    const std::vector<Clip>& clips = controller.set().clips();
-    const int count = static_cast<int>(clips.size());
-    if (count == 0) return;
-    const int clip = controller.clip() < 0 ? 0 : (controller.clip() + step + count) % count;
-    // Fades do not advance while paused: show the next clip immediately and stay paused.
-    const bool isPaused = controller.state() == PlayState::Paused;
-    const bool isShown =
-        static_cast<bool>(controller.crossfade(static_cast<std::size_t>(clip), isPaused ? 0.0 : _fadeSeconds));
-    if (isPaused) controller.pause();
-    if (isShown)
-        OSG_NOTICE << "clip \"" << clips[static_cast<std::size_t>(clip)].name() << "\", " << clip + 1 << " of " << count
-                   << std::endl;
+    for (const Key& key : keys)
+        usage.addKeyboardMouseBinding(std::string(1, key.key), std::string("Animated characters: ") + key.effect);
 }
 
 bool CharacterKeys::press(int key, AnimatedCharacter& character) const
 {
-    AnimationController& controller = character.getController();
-    switch (key)
-    {
-    case 'n':
-        changeClip(controller, 1);
-        return true;
-    case 'N':
-        changeClip(controller, -1);
-        return true;
-    case 'k':
-        setPaused(controller, isAnyPlaying(controller));
-        return true;
-    case '.':
-        step(controller, frameSeconds);
-        return true;
-    case ',':
-        step(controller, -frameSeconds);
-        return true;
-    case '-':
-    case osgGA::GUIEventAdapter::KEY_KP_Subtract:
-        multiplySpeed(controller, 1.0 / speedFactor);
-        return true;
-    case '+':
-    case '=':
-    case osgGA::GUIEventAdapter::KEY_KP_Add:
-        multiplySpeed(controller, speedFactor);
-        return true;
-    case 'r':
-        multiplySpeed(controller, -1.0);
-        return true;
-    case 'j':
-        showJointLines(character, !hasJointLines(character));
-        return true;
-    default:
-        return false;
-    }
+    if (key == osgGA::GUIEventAdapter::KEY_KP_Subtract) key = '-';
+    if (key == '=' || key == osgGA::GUIEventAdapter::KEY_KP_Add) key = '+';
+    const auto known =
+        std::find_if(std::begin(keys), std::end(keys), [key](const Key& each) { return each.key == key; });
+    if (known == std::end(keys)) return false;
+    known->press(character, character.getController(), _fadeSeconds);
+    return true;
 }
 
 } // namespace osgGpuAnimation

@@ -38,7 +38,11 @@ public:
     /// fadeSeconds: duration of the crossfades, at least 0.
     explicit CharacterKeys(double fadeSeconds) : _fadeSeconds(fadeSeconds) {}
     /// Copies the duration of the crossfades.
-    CharacterKeys(const CharacterKeys& other, const osg::CopyOp& copyop);
+    CharacterKeys(const CharacterKeys& other, const osg::CopyOp& copyop)
+        : osg::Object(other, copyop), osg::Callback(other, copyop), osgGA::GUIEventHandler(other, copyop),
+          _fadeSeconds(other._fadeSeconds)
+    {
+    }
     META_Object(osgGpuAnimation, CharacterKeys)
 
     double getFadeSeconds() const { return _fadeSeconds; }          ///< duration of the crossfades
@@ -60,7 +64,6 @@ protected:
 private:
     void addToHelp(osgGA::GUIActionAdapter& action);
     bool isFirstTime(const osgGA::GUIEventAdapter& event, const osg::Object& character);
-    void changeClip(AnimationController& controller, int step) const;
 
     double _fadeSeconds = 0.3;
     osg::observer_ptr<osg::View> _helped;              ///< the last view that addToHelp() has seen

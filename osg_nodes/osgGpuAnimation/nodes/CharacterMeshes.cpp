@@ -76,14 +76,7 @@ Result<void> CharacterMeshes::setVisible(const std::string& name, bool isVisible
 
 std::vector<std::string> CharacterMeshes::getVariants() const
 {
-    std::vector<std::string> names = variantNamesOf(_node);
-    const auto addNames = [&](const SkinnedGeometry& mesh)
-    {
-        for (const std::string& name : variantNamesOf(mesh))
-            if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-    };
-    forEachMesh(_node, addNames);
-    return names;
+    return variantNamesIn(_node);
 }
 
 Result<void> CharacterMeshes::setVariant(const std::string& name)

@@ -7,21 +7,11 @@
 namespace osgGpuAnimation
 {
 
-namespace
-{
-
-EntryBoxes entryBoxesOf(osg::Node& node, const AnimationSet& set)
-{
-    PaletteEntryBounds bounds(set);
-    forEachMeshBelow(node, [&](const SkinnedGeometry& mesh) { bounds.add(mesh); });
-    return bounds.boxes();
-}
-
-} // namespace
-
 Result<CompactedCharacter> compactClipsOf(AnimatedCharacter& character, double fraction)
 {
-    const EntryBoxes boxes = entryBoxesOf(character, character.getAnimationSet());
+    PaletteEntryBounds bounds(character.getAnimationSet());
+    forEachMeshBelow(character, [&](const SkinnedGeometry& mesh) { bounds.add(mesh); });
+    const EntryBoxes& boxes = bounds.boxes();
     CompactedCharacter result;
     result.longestSide = longestSide(character.getAnimationSet(), boxes);
     result.tolerance = fraction * result.longestSide;

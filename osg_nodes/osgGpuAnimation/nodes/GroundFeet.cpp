@@ -8,8 +8,6 @@
 #include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
 #include <osg/Notify>
-#include <osg/Transform>
-#include <osgUtil/CullVisitor>
 
 #include <algorithm>
 #include <cmath>
@@ -252,11 +250,7 @@ void GroundFeet::operator()(osg::Node* node, osg::NodeVisitor* visitor)
     if (character && stamp)
     {
         if (osgUtil::CullVisitor* cull = visitor->asCullVisitor())
-        {
-            const osg::Vec3d eye = cull->getCurrentCamera()->getInverseViewMatrix().getTrans();
-            const osg::Vec3d origin = osg::computeLocalToWorld(visitor->getNodePath()).getTrans();
-            _states->sawFrom(*character, (origin - eye).length(), stamp->getFrameNumber());
-        }
+            _states->see(*character, *cull);
         else if (FeetState& state = _states->of(*character);
                  visitor->getVisitorType() == osg::NodeVisitor::UPDATE_VISITOR &&
                  _states->resolveLegs(*character, _legs, state))

@@ -7,8 +7,6 @@
 #include <osg/NodeVisitor>
 #include <osg/Notify>
 
-#include <algorithm>
-
 namespace osgGpuAnimation
 {
 
@@ -53,16 +51,6 @@ JointAttachment::JointAttachment()
     // Not STATIC: the Optimizer must not flatten it. The update traversal must reach it without a callback.
     setDataVariance(osg::Object::DYNAMIC);
     setNumChildrenRequiringUpdateTraversal(getNumChildrenRequiringUpdateTraversal() + 1);
-}
-
-JointAttachment::JointAttachment(const std::string& joint) : JointAttachment()
-{
-    _jointName = joint;
-}
-
-JointAttachment::JointAttachment(int joint) : JointAttachment()
-{
-    _joint = joint;
 }
 
 JointAttachment::JointAttachment(const JointAttachment& other, const osg::CopyOp& copyop)

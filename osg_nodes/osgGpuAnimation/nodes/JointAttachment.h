@@ -33,8 +33,8 @@ class JointAttachment : public osg::MatrixTransform
 public:
     /// An attachment without a joint; setJoint() gives it one.
     JointAttachment();
-    explicit JointAttachment(const std::string& joint); ///< joint: its name, see setJoint()
-    explicit JointAttachment(int joint);                ///< joint: its index, see setJoint()
+    explicit JointAttachment(const std::string& joint) : JointAttachment() { _jointName = joint; } ///< see setJoint()
+    explicit JointAttachment(int joint) : JointAttachment() { _joint = joint; } ///< joint: its index, see setJoint()
     /// Copies the joint; the children as copyop says.
     JointAttachment(const JointAttachment& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
     META_Node(osgGpuAnimation, JointAttachment)

@@ -7,8 +7,6 @@
 #include <osg/LineWidth>
 #include <osg/Material>
 
-#include <glm/mat4x4.hpp>
-
 #include <algorithm>
 
 namespace osgGpuAnimation

@@ -50,7 +50,15 @@ public:
 
     Outfit() = default; ///< shows what the crowd shows
     /// Shares pictures and props, or copies them as copyop says.
-    Outfit(const Outfit& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
+    Outfit(const Outfit& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY)
+        : osg::Object(other, copyop), _visibility(other._visibility), _variant(other._variant), _colors(other._colors),
+          _pictures(other._pictures), _jointScales(other._jointScales), _props(other._props)
+    {
+        for (auto& [material, picture] : _pictures)
+            picture = copyop(picture.get());
+        for (Prop& prop : _props)
+            prop.node = copyop(prop.node.get());
+    }
     META_Object(osgGpuAnimation, Outfit)
 
     /// Shows or hides a part, whether or not the crowd shows it.
@@ -81,7 +89,10 @@ public:
     /// for nodes with callbacks or lights of their own. A prop of several outfits is the same part if joint, node and
     /// matrix are equal. joint: the name of one that moves a mesh of the crowd. toJoint: from the node's space to the
     /// joint's.
-    void addProp(const std::string& joint, osg::Node* node, const osg::Matrixd& toJoint = osg::Matrixd());
+    void addProp(const std::string& joint, osg::Node* node, const osg::Matrixd& toJoint = osg::Matrixd())
+    {
+        _props.push_back({joint, node, toJoint});
+    }
     const std::vector<Prop>& getProps() const { return _props; } ///< in the order of addProp()
 
 protected:

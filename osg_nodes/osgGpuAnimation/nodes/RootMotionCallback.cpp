@@ -6,11 +6,6 @@
 namespace osgGpuAnimation
 {
 
-RootMotionCallback::RootMotionCallback(const RootMotionCallback& other, const osg::CopyOp& copyop)
-    : osg::Object(other, copyop), osg::Callback(other, copyop), osg::NodeCallback(other, copyop)
-{
-}
-
 void RootMotionCallback::operator()(osg::Node* node, osg::NodeVisitor* visitor)
 {
     if (auto* character = dynamic_cast<AnimatedCharacter*>(node))

@@ -17,7 +17,10 @@ class RootMotionCallback : public osg::NodeCallback
 public:
     RootMotionCallback() = default;
     /// A copy; the callback has no state.
-    RootMotionCallback(const RootMotionCallback& other, const osg::CopyOp& copyop);
+    RootMotionCallback(const RootMotionCallback& other, const osg::CopyOp& copyop)
+        : osg::Object(other, copyop), osg::Callback(other, copyop), osg::NodeCallback(other, copyop)
+    {
+    }
     META_Object(osgGpuAnimation, RootMotionCallback)
 
     /// Applies the root motion since the last call, then continues the traversal.

@@ -9,10 +9,7 @@
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
-#include <osg/Camera>
 #include <osg/Notify>
-#include <osg/Transform>
-#include <osgUtil/CullVisitor>
 
 #include <algorithm>
 #include <cmath>
@@ -495,19 +492,15 @@ void SpringBones::operator()(osg::Node* node, osg::NodeVisitor* visitor)
     const osg::FrameStamp* stamp = visitor->getFrameStamp();
     if (character && stamp)
     {
-        const unsigned int frame = stamp->getFrameNumber();
-        const osg::Matrixd toWorld = osg::computeLocalToWorld(visitor->getNodePath());
         if (osgUtil::CullVisitor* cull = visitor->asCullVisitor())
-        {
-            const osg::Vec3d eye = cull->getCurrentCamera()->getInverseViewMatrix().getTrans();
-            _states->sawFrom(*character, (toWorld.getTrans() - eye).length(), frame);
-        }
+            _states->see(*character, *cull);
         else if (visitor->getVisitorType() == osg::NodeVisitor::UPDATE_VISITOR)
         {
             State& state = _states->of(*character);
             const Springs* springs = state.springs(character->getController().sharedSet(), _chains, _colliders);
-            if (springs && _states->isWithin(*character, _maxDistance, frame))
-                state.update(*springs, _colliders, *character, toWorld, *stamp, _layer);
+            if (springs && _states->isWithin(*character, _maxDistance, stamp->getFrameNumber()))
+                state.update(*springs, _colliders, *character, osg::computeLocalToWorld(visitor->getNodePath()), *stamp,
+                             _layer);
             else
                 state.stop(*character, _layer);
         }

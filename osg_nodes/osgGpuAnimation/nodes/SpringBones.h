@@ -9,7 +9,6 @@
 
 #include <limits>
 #include <memory>
-#include <string>
 #include <vector>
 
 namespace osgGpuAnimation

@@ -109,9 +109,10 @@ StateGraphDescription toDescription(const Json& json)
 
 Result<std::shared_ptr<const StateGraph>> parseStateGraph(const AnimationSet& set, const std::string& json)
 {
-    const Result<StateGraphDescription> description = parseJson<StateGraphDescription>(json, toDescription);
-    if (!description) return description.error();
-    return StateGraph::create(set, description.value());
+    StateGraphDescription description;
+    const Result<void> read = readJson(json, [&](const Json& text) { description = toDescription(text); });
+    if (!read) return read.error();
+    return StateGraph::create(set, description);
 }
 
 Result<std::shared_ptr<const StateGraph>> readStateGraphFile(const AnimationSet& set, const std::string& file)

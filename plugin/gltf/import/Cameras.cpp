@@ -44,7 +44,7 @@ std::vector<ImportedCamera> makeCameras(const tinygltf::Model& model, const Node
         if (camera.type.empty()) continue;
         const std::string& name = camera.name.empty() ? node.name : camera.name;
         cameras.push_back({node.camera, static_cast<int>(index), makeView(camera)});
-        if (elementOf(areAnimated, node.camera)) markCamera(*cameras.back().view, node.camera);
+        if (elementOf(areAnimated, node.camera)) cameras.back().view->setUserValue(cameraMark, node.camera);
         cameras.back().view->setName(names.unique(name.empty() ? "camera " + std::to_string(node.camera) : name));
     }
     return cameras;

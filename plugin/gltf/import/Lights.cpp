@@ -105,7 +105,7 @@ void addLights(const tinygltf::Model& model, const NodeTree& tree, const osg::Ve
             continue;
         }
         light.source = makeSource(model, light, *made.value());
-        if (areAnimated[source]) markLight(*light.source, light.light);
+        if (areAnimated[source]) light.source->setUserValue(lightMark, light.light);
         const std::vector<int> nodes = tree.visibilityWith(elementOf(tree.visibility, light.node));
         if (!nodes.empty()) markVisibility(*light.source, nodes);
         places.add(static_cast<std::size_t>(light.node), light.source);

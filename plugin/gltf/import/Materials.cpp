@@ -176,7 +176,7 @@ PbrMaterial Materials::pbrMaterial(const tinygltf::Material& material, const Mat
 void Materials::setAnimated(osg::StateSet& state, const MaterialUse& use)
 {
     if (use.material < 0 || !elementOf(_areAnimated, use.material)) return;
-    markMaterial(state, use.material);
+    state.setUserValue(materialMark, use.material);
     for (const MaterialMap& map : _maps.of(use.material).maps)
     {
         if (map.animated.empty() || map.number < 0) continue;

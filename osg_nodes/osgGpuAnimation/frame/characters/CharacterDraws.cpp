@@ -185,8 +185,9 @@ CharacterDraws::Group& CharacterDraws::groupOf(osgUtil::CullVisitor& visitor, co
 {
     const GroupKey key{visitor.getCurrentRenderBin(), visitor.getProjectionMatrix(), &set, slot, level};
     std::vector<std::unique_ptr<Group>>& groups = _groups[visitor.getCurrentStateGraph()];
-    auto known = std::find_if(groups.begin(), groups.end(),
-                              [&](const std::unique_ptr<Group>& group) { return group->key == key; });
+    auto known =
+        std::find_if(groups.begin(), groups.end(),
+                     [&](const std::unique_ptr<Group>& group) { return group->key.members() == key.members(); });
     if (known == groups.end()) known = groups.insert(known, std::make_unique<Group>(Group{key}));
     return **known;
 }

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <tuple>
 #include <unordered_map>
 #include <vector>
 
@@ -112,11 +113,7 @@ private:
         std::size_t slot;
         int level; ///< of detail
 
-        bool operator==(const GroupKey& other) const
-        {
-            return bin == other.bin && projection == other.projection && set == other.set && slot == other.slot &&
-                   level == other.level;
-        }
+        auto members() const { return std::tie(bin, projection, set, slot, level); }
     };
     /// Characters that differ in poses, placements and looks only.
     struct Group

@@ -18,10 +18,6 @@
 #include <utility>
 #include <vector>
 
-#ifndef GL_RASTERIZER_DISCARD
-#define GL_RASTERIZER_DISCARD 0x8C89
-#endif
-
 namespace osgGpuAnimation
 {
 

@@ -9,6 +9,11 @@
 #include <osgGpuAnimation/scene/traversal/CullScopes.h>
 #include <osgGpuAnimation/scene/traversal/MeshVisits.h>
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <osgUtil/CullVisitor>
+
+#include <algorithm>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -18,6 +23,98 @@ namespace osgGpuAnimation
 
 namespace
 {
+
+osg::BoundingBox boxAround(const glm::vec4& sphere)
+{
+    return {sphere.x - sphere.w, sphere.y - sphere.w, sphere.z - sphere.w,
+            sphere.x + sphere.w, sphere.y + sphere.w, sphere.z + sphere.w};
+}
+
+/// One camera's view of a crowd during cull, in the crowd's space: the planes of the view, depths and draws. A
+/// temporary object of the crowd's traversal.
+class CrowdView
+{
+public:
+    explicit CrowdView(osgUtil::CullVisitor& visitor) : _visitor(visitor) {}
+
+    /// The planes of the view volume and of small feature culling; an instance is visible if it reaches n · p + d >= 0.
+    std::vector<glm::vec4> planes() const
+    {
+        std::vector<glm::vec4> planes;
+        osg::CullingSet& culling = _visitor.getCurrentCullingSet();
+        const auto mask = culling.getCullingMask();
+        if (mask & osg::CullingSet::VIEW_FRUSTUM_CULLING)
+        {
+            osg::Polytope& frustum = culling.getFrustum();
+            osg::Polytope::ClippingMask bit = 1;
+            for (const osg::Plane& plane : frustum.getPlaneList())
+            {
+                if (frustum.getCurrentMask() & bit) planes.emplace_back(plane[0], plane[1], plane[2], plane[3]);
+                bit <<= 1;
+            }
+        }
+        if (mask & osg::CullingSet::SMALL_FEATURE_CULLING)
+        {
+            // OSG's test for small features, p · v · pixels > radius, has the form of a plane.
+            const osg::Vec4 plane = culling.getPixelSizeVector() * -culling.getSmallFeatureCullingPixelSize();
+            planes.emplace_back(plane.x(), plane.y(), plane.z(), plane.w());
+        }
+        return planes;
+    }
+
+    /// Updates the camera's near and far planes. seen: at least one.
+    void look(const SeenMembers& seen)
+    {
+        const osg::Matrix& toEye = *_visitor.getModelViewMatrix();
+        const glm::vec4 depthOf(-toEye(0, 2), -toEye(1, 2), -toEye(2, 2), -toEye(3, 2));
+        const float scale = glm::length(glm::vec3(depthOf));
+        float nearest = 1e30f, max = -1e30f;
+        glm::vec4 firstSphere(0.0f, 0.0f, 0.0f, -1.0f), lastSphere = firstSphere;
+        const auto lookAt = [&](const SeenMembers::Span& span)
+        {
+            for (const CrowdMember* member = span.begin; member != span.end; ++member)
+            {
+                const glm::vec4& sphere = member->sphere;
+                const float depth = glm::dot(depthOf, glm::vec4(glm::vec3(sphere), 1.0f));
+                const float reach = sphere.w * scale;
+                // Instances behind the eye do not affect the near plane.
+                if (depth + reach < 0.0f) continue;
+                if (depth - reach < nearest) nearest = depth - reach, firstSphere = sphere;
+                if (depth + reach > max) max = depth + reach, lastSphere = sphere;
+            }
+        };
+        const auto middleOf = [&](const SeenMembers::Span& span)
+        { return glm::dot(depthOf, glm::vec4(span.centre, 1.0f)); };
+        const auto isNearer = [&](const SeenMembers::Span& a, const SeenMembers::Span& b)
+        { return middleOf(a) < middleOf(b); };
+        // The other cells are mostly between the first and the last one.
+        const auto [first, last] = std::minmax_element(seen.spans().begin(), seen.spans().end(), isNearer);
+        lookAt(*first);
+        lookAt(*last);
+        for (const SeenMembers::Span& span : seen.spans())
+        {
+            const float half = glm::dot(glm::abs(glm::vec3(depthOf)), span.half) + span.radius * scale;
+            if (middleOf(span) - half < nearest || middleOf(span) + half > max) lookAt(span);
+        }
+        if (firstSphere.w < 0.0f) return;
+        _depth = 0.5f * (nearest + max);
+        if (_visitor.getComputeNearFarMode() == osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR) return;
+        _visitor.updateCalculatedNearFar(toEye, boxAround(firstSphere));
+        _visitor.updateCalculatedNearFar(toEye, boxAround(lastSphere));
+    }
+
+    /// Adds the mesh to the visitor's render bin at the mean depth of look() if its node mask allows it.
+    void draw(SkinnedGeometry& mesh, const PaletteBinding& binding)
+    {
+        if (!_visitor.validNodeMask(mesh)) return;
+        PoseStage::count(_visitor, mesh, binding);
+        mesh.addTo(_visitor, _visitor.getModelViewMatrix(), _depth);
+    }
+
+private:
+    osgUtil::CullVisitor& _visitor;
+    float _depth = 0.0f; ///< distance from the eye
+};
 
 /// The meshes to draw at a level, each with its list of instances.
 class LevelMeshes

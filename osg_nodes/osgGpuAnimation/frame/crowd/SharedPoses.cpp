@@ -434,7 +434,7 @@ std::vector<DrawState> submitSeen(PoseFrame& frame, const CrowdInstances& instan
         draws = shared->submit(frame, instances, scale, lists, seen, others);
     else
         seen.findIndices(instances.size(), others);
-    for (const DrawState& draw : submitSeen(frame, instances, CrowdLod(instances, scale), lists, others))
+    for (const DrawState& draw : submitSeen(frame, instances, scale, lists, others))
         draws.push_back(draw);
     return draws;
 }

@@ -175,21 +175,31 @@ std::unique_ptr<PoseBatch> PoseFrame::makeBatch(std::shared_ptr<const AnimationS
     return spareBatch(std::move(set));
 }
 
-SubmittedBatch PoseFrame::submit(std::unique_ptr<PoseBatch> content, const void* crowd,
-                                 const std::vector<std::uint32_t>& instances)
+/// The batch of a crowd with this content: that of another camera, or a new one.
+PoseFrame::Batch& PoseFrame::wholeBatch(std::unique_ptr<PoseBatch> content)
 {
-    const std::lock_guard<std::mutex> lock(_mutex);
-    for (const Batch* batch : _batchesOfSet[&content->set()])
-        if (batch->all.stateSet && batch->content->isSame(*content))
+    for (Batch* batch : _batchesOfSet[&content->set()])
+        if (batch->isWhole && batch->content->isSame(*content))
         {
             _spareBatches.push_back(std::move(content));
-            return {batch->slot, batch->all};
+            return *batch;
         }
     Batch& batch = addBatch(std::move(content));
-    batch.crowd = crowd;
-    batch.instances = instances;
-    batch.all = stateOf(batch, 0, batch.content->size(), LodLevels::allTriangles);
-    return {batch.slot, batch.all};
+    batch.isWhole = true;
+    return batch;
+}
+
+std::size_t PoseFrame::submit(std::unique_ptr<PoseBatch> content, const void* crowd,
+                              const std::vector<std::uint32_t>& instances)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    Batch& batch = wholeBatch(std::move(content));
+    if (!batch.crowd)
+    {
+        batch.crowd = crowd;
+        batch.instances = instances;
+    }
+    return batch.slot;
 }
 
 std::size_t PoseFrame::submitShared(std::unique_ptr<PoseBatch> content, const void* crowd,
@@ -197,15 +207,7 @@ std::size_t PoseFrame::submitShared(std::unique_ptr<PoseBatch> content, const vo
 {
     const std::lock_guard<std::mutex> lock(_mutex);
     _shared.push_back({crowd, content->sharedSet(), std::move(placed)});
-    for (const Batch* batch : _batchesOfSet[&content->set()])
-        if (batch->isShared && batch->content->isSame(*content))
-        {
-            _spareBatches.push_back(std::move(content));
-            return batch->slot;
-        }
-    Batch& batch = addBatch(std::move(content));
-    batch.isShared = true;
-    return batch.slot;
+    return wholeBatch(std::move(content)).slot;
 }
 
 DrawState PoseFrame::placedState(const AnimationSet& set, std::size_t slot,

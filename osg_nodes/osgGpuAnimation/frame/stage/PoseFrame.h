@@ -39,13 +39,6 @@ struct DrawState
     std::size_t list = 0; ///< of a crowd: the meshes to draw, see OutfitLists
 };
 
-/// The place of a batch that was submitted as a whole.
-struct SubmittedBatch
-{
-    std::size_t slot;
-    DrawState all; ///< for drawing all its instances
-};
-
 /// The visible characters of one frame in one graphics context, each once for all cameras: their batches and the states
 /// to draw them with. Cameras fill it during cull, possibly several concurrently; the draw side evaluates it. It is a
 /// snapshot: the update of the next frame may change the controllers at the same time.
@@ -70,9 +63,9 @@ public:
     /// An empty batch for the caller to fill and submit. It reuses the storage of earlier frames.
     std::unique_ptr<PoseBatch> makeBatch(std::shared_ptr<const AnimationSet> set);
     /// Adds a whole batch unless an equal one was submitted (by another camera). batch: not empty. instances: their
-    /// numbers in the crowd, for the statistics.
-    SubmittedBatch submit(std::unique_ptr<PoseBatch> batch, const void* crowd,
-                          const std::vector<std::uint32_t>& instances);
+    /// numbers in the crowd, for the statistics. Returns its slot.
+    std::size_t submit(std::unique_ptr<PoseBatch> batch, const void* crowd,
+                       const std::vector<std::uint32_t>& instances);
 
     /// Adds a batch of poses for the instances of a list, unless an equal one was submitted. Returns its slot.
     std::size_t submitShared(std::unique_ptr<PoseBatch> batch, const void* crowd,
@@ -99,14 +92,13 @@ private:
     {
         std::unique_ptr<PoseBatch> content;
         std::size_t slot;
-        DrawState all{}; ///< null: a batch of characters, each with its own state
         const void* crowd = nullptr;
         std::vector<std::uint32_t> instances{}; ///< of the crowd
         bool isEvaluated = false;
 
-        bool isShared = false; ///< its poses are for PlacedInstances
+        bool isWhole = false; ///< of a crowd
 
-        bool isOpen() const { return !all.stateSet && !isShared && !isEvaluated; }
+        bool isOpen() const { return !isWhole && !isEvaluated; }
     };
     struct Submitted
     {
@@ -141,6 +133,7 @@ private:
                             const AffineMatrix& rootMatrix) const;
     Batch& openBatch(const AnimationController& controller, const AffineMatrix& rootMatrix);
     Batch& addBatch(std::unique_ptr<PoseBatch> content);
+    Batch& wholeBatch(std::unique_ptr<PoseBatch> content);
     std::unique_ptr<PoseBatch> spareBatch(std::shared_ptr<const AnimationSet> set);
     DrawState stateOf(const Batch& batch, std::size_t instance, std::size_t instanceCount, int level);
     /// Where the placements of a draw come from.

@@ -80,16 +80,6 @@ bool PoseStage::drawFromAbove(osgUtil::CullVisitor& visitor, const DrawnCharacte
     return stage._draws.drawFromAbove(visitor, stage._lodView, character, toParent, toEye, *stage._frame);
 }
 
-PoseFrame& PoseStage::frame(osgUtil::CullVisitor& visitor)
-{
-    return *current(visitor)._frame;
-}
-
-LodView& PoseStage::lodView(osgUtil::CullVisitor& visitor)
-{
-    return current(visitor)._lodView;
-}
-
 void PoseStage::count(osgUtil::CullVisitor& visitor, const SkinnedGeometry& mesh, const PaletteBinding& binding)
 {
     PoseStage& stage = current(visitor);

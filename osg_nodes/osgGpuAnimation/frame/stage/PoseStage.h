@@ -25,9 +25,9 @@ public:
     static bool drawFromAbove(osgUtil::CullVisitor& visitor, const DrawnCharacter& character,
                               const osg::Matrixd& toParent);
     /// The frame of the visitor's cull, for crowds, which submit whole batches.
-    static PoseFrame& frame(osgUtil::CullVisitor& visitor);
+    static PoseFrame& frame(osgUtil::CullVisitor& visitor) { return *current(visitor)._frame; }
     /// The view that selects levels of detail at the visitor's present place.
-    static LodView& lodView(osgUtil::CullVisitor& visitor);
+    static LodView& lodView(osgUtil::CullVisitor& visitor) { return current(visitor)._lodView; }
     /// Counts the instances of an instanced draw in the statistics of the visitor's camera, if it collects any.
     static void count(osgUtil::CullVisitor& visitor, const SkinnedGeometry& mesh, const PaletteBinding& binding);
 

@@ -3,10 +3,6 @@
 
 #include <osg/Texture>
 
-#ifndef GL_TEXTURE_BINDING_BUFFER
-#define GL_TEXTURE_BINDING_BUFFER 0x8C2C
-#endif
-
 #include <algorithm>
 #include <atomic>
 #include <cassert>

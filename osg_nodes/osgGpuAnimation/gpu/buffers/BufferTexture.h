@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace osgGpuAnimation
 {
@@ -60,5 +61,34 @@ private:
     std::uint64_t _serial = 0;
     std::size_t _capacity = 0;
 };
+
+/// Uploads the units that have changed, side by side ones together, and returns their bytes. uploaded: what identifies
+/// the contents of the units in the buffer, by default none. identityOf(unit), elementsOf(unit): of the `count` present
+/// ones. memory: kept from call to call.
+template <typename Identity, typename Element, typename IdentityOf, typename ElementsOf>
+std::size_t uploadChangedUnits(BufferTexture& buffer, std::size_t unitBytes, std::size_t count,
+                               std::vector<Identity>& uploaded, std::vector<Element>& memory, IdentityOf identityOf,
+                               ElementsOf elementsOf)
+{
+    std::size_t bytes = 0;
+    if (buffer.reserve(count * unitBytes)) uploaded.clear(); // new storage is empty
+    uploaded.resize(count);
+    for (std::size_t first = 0, end = 0; first < count; first = end + 1)
+    {
+        memory.clear();
+        for (end = first; end < count && uploaded[end] != identityOf(end); ++end)
+        {
+            const auto& elements = elementsOf(end);
+            memory.insert(memory.end(), elements.begin(), elements.end());
+            uploaded[end] = identityOf(end);
+        }
+        if (end - first == count) // all of it at once does not wait for earlier draws
+            buffer.upload(memory.data(), count * unitBytes);
+        else if (end > first)
+            buffer.uploadPart(first * unitBytes, memory.data(), (end - first) * unitBytes);
+        bytes += (end - first) * unitBytes;
+    }
+    return bytes;
+}
 
 } // namespace osgGpuAnimation

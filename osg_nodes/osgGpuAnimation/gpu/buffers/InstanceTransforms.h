@@ -8,7 +8,6 @@
 #include <osg/State>
 
 #include <array>
-#include <cstdint>
 #include <memory>
 #include <vector>
 

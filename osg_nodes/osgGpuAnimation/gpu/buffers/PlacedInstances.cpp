@@ -22,32 +22,15 @@ PlacedInstanceBuffers& PlacedInstanceBuffers::of(osg::State& state)
     return *osg::get<PlacedInstanceBuffers>(state.getContextID());
 }
 
-/// Uploads the blocks that have changed, side by side ones together.
 template <typename Element>
 void PlacedInstanceBuffers::upload(const typename SharedBlocks<Element>::Snapshot& content, Uploaded<Element>& uploaded)
 {
     if (uploaded.content == content) return;
-    constexpr std::size_t bytes = sizeof(typename SharedBlocks<Element>::Block);
-    const typename SharedBlocks<Element>::Blocks& blocks = *content;
-    if (uploaded.buffer->reserve(blocks.size() * bytes)) uploaded.content.reset(); // new storage is empty
-    const auto isNew = [&](std::size_t block)
-    { return !uploaded.content || block >= uploaded.content->size() || (*uploaded.content)[block] != blocks[block]; };
-    std::vector<Element> changed;
-    for (std::size_t first = 0; first < blocks.size(); ++first)
-    {
-        if (!isNew(first)) continue;
-        std::size_t end = first;
-        changed.clear();
-        for (; end < blocks.size() && isNew(end); ++end)
-            changed.insert(changed.end(), blocks[end]->begin(), blocks[end]->end());
-        // All of it at once does not wait for earlier draws.
-        if (end - first == blocks.size())
-            uploaded.buffer->upload(changed.data(), blocks.size() * bytes);
-        else
-            uploaded.buffer->uploadPart(first * bytes, changed.data(), (end - first) * bytes);
-        _bytesUploaded += (end - first) * bytes;
-        first = end;
-    }
+    std::vector<Element> memory;
+    _bytesUploaded += uploadChangedUnits(
+        *uploaded.buffer, sizeof(typename SharedBlocks<Element>::Block), content->size(), uploaded.blocks,
+        memory, [&](std::size_t block) -> const auto& { return (*content)[block]; },
+        [&](std::size_t block) -> const auto& { return *(*content)[block]; });
     uploaded.content = content;
 }
 

@@ -102,44 +102,18 @@ bool PosePalette::uploadPosed(const PoseBatch& batch, std::size_t first, Chunk& 
     chunk.firstPosed = batch.firstPosed(first);
     const std::size_t count = batch.firstPosed(first + chunk.size) - chunk.firstPosed;
     const std::size_t bytes = batch.set().trackCount() * POSE_TEXELS_PER_TRANSFORM * BufferTexture::texelBytes;
-    if (count == 0)
-    {
-        const bool hadSome = !chunk.uploadedPosed.empty();
-        chunk.uploadedPosed.clear();
-        return hadSome;
-    }
+    const bool isOtherCount = chunk.uploadedPosed.size() != count;
     const auto keyframe = [&](std::size_t place) -> const PosedKeyframe&
     { return *batch.posed()[chunk.firstPosed + place]; };
-    if (chunk.posed.reserve(count * bytes)) chunk.uploadedPosed.clear(); // new storage is empty
-    const bool isOtherCount = chunk.uploadedPosed.size() != count;
-    chunk.uploadedPosed.resize(count, 0);
     std::size_t changed = 0;
-    for (std::size_t place = 0; place < count; ++place)
-        changed += chunk.uploadedPosed[place] != keyframe(place).serial();
-    const bool isWhole = changed == count;
-    // Ranges of changed keyframes; if all changed, one that does not wait for earlier draws.
-    for (std::size_t begin = 0; begin < count && changed > 0;)
-    {
-        if (chunk.uploadedPosed[begin] == keyframe(begin).serial())
-        {
-            ++begin;
-            continue;
-        }
-        _posedTexels.clear();
-        std::size_t end = begin;
-        for (; end < count && chunk.uploadedPosed[end] != keyframe(end).serial(); ++end)
-        {
-            const std::vector<glm::uvec4>& texels = keyframe(end).texels();
-            _posedTexels.insert(_posedTexels.end(), texels.begin(), texels.end());
-            chunk.uploadedPosed[end] = keyframe(end).serial();
-        }
-        if (isWhole)
-            chunk.posed.upload(_posedTexels.data(), count * bytes);
-        else
-            chunk.posed.uploadPart(begin * bytes, _posedTexels.data(), (end - begin) * bytes);
-        bytesUploaded += (end - begin) * bytes;
-        begin = end;
-    }
+    if (count == 0)
+        chunk.uploadedPosed.clear();
+    else
+        changed = uploadChangedUnits(
+            chunk.posed, bytes, count, chunk.uploadedPosed, _posedTexels,
+            [&](std::size_t place) { return keyframe(place).serial(); },
+            [&](std::size_t place) -> const auto& { return keyframe(place).texels(); });
+    bytesUploaded += changed;
     return changed > 0 || isOtherCount;
 }
 

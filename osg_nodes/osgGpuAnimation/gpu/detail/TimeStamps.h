@@ -3,13 +3,6 @@
 
 #include <osg/GLExtensions>
 
-#ifndef GL_TIMESTAMP
-#define GL_TIMESTAMP 0x8E28
-#endif
-#ifndef GL_QUERY_COUNTER_BITS_ARB
-#define GL_QUERY_COUNTER_BITS_ARB 0x8864
-#endif
-
 namespace osgGpuAnimation
 {
 
@@ -18,7 +11,7 @@ namespace osgGpuAnimation
 inline GLint timeStampBits(const osg::GLExtensions& gl)
 {
     GLint bits = 0;
-    if (gl.isARBTimerQuerySupported) gl.glGetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS_ARB, &bits);
+    if (gl.isARBTimerQuerySupported) gl.glGetQueryiv(GL_TIMESTAMP, GL_QUERY_COUNTER_BITS, &bits);
     return bits;
 }
 

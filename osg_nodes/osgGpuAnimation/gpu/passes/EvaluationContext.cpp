@@ -1,24 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/gpu/passes/EvaluationContext.h>
 
-#include <osgGpuAnimation/gpu/passes/TextureUnits.h>
-
 #include <ShaderSources.h>
-
-#ifndef GL_COPY_READ_BUFFER
-#define GL_COPY_READ_BUFFER 0x8F36
-#define GL_COPY_WRITE_BUFFER 0x8F37
-#endif
 
 namespace osgGpuAnimation
 {
-
-namespace
-{
-
-constexpr std::initializer_list<const char*> rowOutputs{"row0", "row1", "row2"};
-
-} // namespace
 
 EvaluationContext::EvaluationContext(osg::GLExtensions& extensions)
     : gl(&extensions), vertexArrays(extensions), scratch(extensions, GL_RGBA32F_ARB),
@@ -28,40 +14,19 @@ EvaluationContext::EvaluationContext(osg::GLExtensions& extensions)
     osg::setGLExtensionFuncPtr(copyBufferSubData, "glCopyBufferSubData");
 }
 
-FeedbackPass& EvaluationContext::posePass(const PoseVariant& variant)
-{
-    Pass& pass = _posePasses[variant];
-    if (!pass) pass = variant.makePosePass(*gl);
-    return *pass;
-}
-
-FeedbackPass& EvaluationContext::mixPass(const PoseVariant& variant)
-{
-    Pass& pass = _mixPasses[variant];
-    if (!pass) pass = variant.makeMixPass(*gl);
-    return *pass;
-}
-
-FeedbackPass& EvaluationContext::constraintPass(const ConstraintShape& shape, const PoseVariant& variant)
-{
-    Pass& pass = _constraintPasses[{shape, variant}];
-    if (!pass) pass = variant.makeConstraintPass(*gl, shape);
-    return *pass;
-}
-
-FeedbackPass& EvaluationContext::localPass()
+FeedbackPass& EvaluationContext::pass(Stage stage, const PoseVariant& variant, const ConstraintShape& shape)
 {
     using namespace shaders;
-    if (!_localPass) _localPass.reset(new FeedbackPass(*gl, "local", {local_glsl, local_vert}, rowOutputs));
-    return *_localPass;
-}
-
-FeedbackPass& EvaluationContext::worldPass()
-{
-    using namespace shaders;
+    std::unique_ptr<FeedbackPass>& pass = _passes[{stage, variant, shape}];
+    if (pass) return *pass;
+    const std::vector<const char*> rows{"row0", "row1", "row2"};
     const char* const limits = "const bool hasLimits = true;\n";
-    if (!_worldPass) _worldPass.reset(new FeedbackPass(*gl, "world", {limits, world_glsl, world_vert}, rowOutputs));
-    return *_worldPass;
+    if (stage == Stage::Pose) pass = variant.makePosePass(*gl);
+    if (stage == Stage::Constrain) pass = variant.makeConstraintPass(*gl, shape);
+    if (stage == Stage::Mix) pass = variant.makeMixPass(*gl);
+    if (stage == Stage::Local) pass.reset(new FeedbackPass(*gl, "local", {local_glsl, local_vert}, rows));
+    if (stage == Stage::World) pass.reset(new FeedbackPass(*gl, "world", {limits, world_glsl, world_vert}, rows));
+    return *pass;
 }
 
 void EvaluationContext::useMixInput(FeedbackScope& scope, FeedbackPass& pass, const AnimationSet& set,
@@ -97,21 +62,10 @@ void EvaluationContext::copy(const BufferTexture& from, const BufferTexture& to,
     gl->glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
 }
 
-template <typename Action>
-void EvaluationContext::forEachPass(Action action)
-{
-    for (auto* passes : {&_posePasses, &_mixPasses})
-        for (auto& [variant, pass] : *passes)
-            action(pass);
-    for (auto& [shape, pass] : _constraintPasses)
-        action(pass);
-    for (Pass* pass : {&_localPass, &_worldPass})
-        if (*pass) action(*pass);
-}
-
 void EvaluationContext::release()
 {
-    forEachPass([](Pass& pass) { pass->release(); });
+    for (auto& [key, pass] : _passes)
+        pass->release();
     for (BufferTexture* buffer : {&scratch, &mixedTracks, &solved, &corrections})
         buffer->release();
     vertexArrays.release();
@@ -120,10 +74,7 @@ void EvaluationContext::release()
 
 void EvaluationContext::discard()
 {
-    forEachPass([](Pass& pass) { pass.reset(); });
-    _posePasses.clear();
-    _mixPasses.clear();
-    _constraintPasses.clear();
+    _passes.clear();
     for (BufferTexture* buffer : {&scratch, &mixedTracks, &solved, &corrections})
         buffer->discard();
     vertexArrays.discard();

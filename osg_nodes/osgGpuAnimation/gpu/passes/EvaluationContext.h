@@ -10,11 +10,27 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 namespace osgGpuAnimation
 {
+
+/// The texture units of the passes. Those from unitCorrections on are for batches with constraints only.
+enum PoseUnit : int
+{
+    unitKeyframes,
+    unitSamples,
+    unitEntries,
+    unitRoots,
+    unitPrevious,
+    unitMasks,
+    unitPosed,
+    unitCorrections,
+    unitJointsAbove,
+    unitTargets,
+};
+static_assert(unitTargets < FeedbackScope::unitCount, "the scope unbinds all units");
 
 /// What all evaluations in one graphics context share: the passes, which are compiled at first use, and the buffers of
 /// intermediate results.
@@ -32,12 +48,16 @@ struct EvaluationContext
 
     explicit EvaluationContext(osg::GLExtensions& gl);
 
-    FeedbackPass& posePass(const PoseVariant& variant);
-    FeedbackPass& mixPass(const PoseVariant& variant);
-    FeedbackPass& constraintPass(const ConstraintShape& shape, const PoseVariant& variant);
-    FeedbackPass& localPass();
-    FeedbackPass& worldPass();
-
+    enum class Stage
+    {
+        Pose,      ///< the fused form
+        Constrain, ///< one constraint in the fused form
+        Mix,       ///< the first pass of the separate form
+        Local,
+        World,
+    };
+    /// variant: of all stages but the last two. shape: of the constraint.
+    FeedbackPass& pass(Stage stage, const PoseVariant& variant = {}, const ConstraintShape& shape = {});
     /// Makes a pass with the mix stage current, with its input.
     void useMixInput(FeedbackScope& scope, FeedbackPass& pass, const AnimationSet& set, const AnimationBuffers& buffers,
                      const PosePalette::Chunk& chunk) const;
@@ -61,13 +81,7 @@ struct EvaluationContext
     bool usesBaseInstances = false;
 
 private:
-    using Pass = std::unique_ptr<FeedbackPass>;
-    template <typename Action>
-    void forEachPass(Action action);
-
-    std::map<PoseVariant, Pass> _posePasses, _mixPasses;
-    std::map<std::pair<ConstraintShape, PoseVariant>, Pass> _constraintPasses;
-    Pass _localPass, _worldPass;
+    std::map<std::tuple<Stage, PoseVariant, ConstraintShape>, std::unique_ptr<FeedbackPass>> _passes;
 };
 
 } // namespace osgGpuAnimation

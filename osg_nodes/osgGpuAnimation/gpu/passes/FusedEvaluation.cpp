@@ -2,7 +2,6 @@
 #include <osgGpuAnimation/gpu/passes/FusedEvaluation.h>
 
 #include <osgGpuAnimation/animation/constraints/ConstraintPlan.h>
-#include <osgGpuAnimation/gpu/passes/TextureUnits.h>
 
 #include <layout.glsl>
 
@@ -90,7 +89,7 @@ bool FusedEvaluation::computeRun(std::size_t level, std::size_t first, std::size
     PoseVariant variant = variantOf(level);
     variant.hasCorrections = _constraints && _constraints->isCorrected(first);
     if (variant.hasCorrections) variant.hasWeights = false;
-    FeedbackPass& pass = _context.posePass(variant);
+    FeedbackPass& pass = _context.pass(EvaluationContext::Stage::Pose, variant);
     if (!use(pass)) return false;
     setParents(pass, level);
     if (variant.hasCorrections) pass.setTexture(_scope, "corrections", unitCorrections, _context.corrections.texture());
@@ -134,7 +133,7 @@ bool FusedEvaluation::solveConstraint(std::size_t step, std::size_t level)
     PoseVariant variant = variantOf(level);
     variant.setMotion(plan.level == 0 ? _buffers.anyTrack() : _buffers.levels()[plan.level]);
     variant.hasWeights = false;
-    FeedbackPass& pass = _context.constraintPass(shape, variant);
+    FeedbackPass& pass = _context.pass(EvaluationContext::Stage::Constrain, variant, shape);
     if (!use(pass)) return false;
     const std::size_t jointBytes = _chunk.width * EvaluationContext::rotationBytes;
     const auto joints = static_cast<std::size_t>(shape.chainLength);
@@ -170,7 +169,7 @@ bool FusedEvaluation::computeGarments()
     PoseVariant variant = _variant;
     variant.hasWeights = false;
     variant.setMotion(_buffers.levels().back());
-    FeedbackPass& pass = _context.posePass(variant);
+    FeedbackPass& pass = _context.pass(EvaluationContext::Stage::Pose, variant);
     if (!use(pass)) return false;
     pass.setTexture(_scope, "parentLevels", unitPrevious, _chunk.palette.texture());
     pass.setInt("firstParent", 0);

@@ -8,7 +8,6 @@
 #include <ShaderSources.h>
 
 #include <algorithm>
-#include <initializer_list>
 
 namespace osgGpuAnimation
 {

@@ -5,7 +5,6 @@
 
 #include <osg/Image>
 
-#include <cstddef>
 #include <string>
 #include <string_view>
 

@@ -8,16 +8,9 @@
 #include <osg/State>
 #include <ShaderSources.h>
 
-#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
-
-#ifndef GL_RGBA16F_ARB
-#define GL_RGBA16F_ARB 0x881A
-#endif
-#ifndef GL_VERTEX_ARRAY_BINDING
-#define GL_VERTEX_ARRAY_BINDING 0x85B5
-#endif
 
 namespace osgGpuAnimation
 {
@@ -32,28 +25,13 @@ GLint valueOf(GLenum name)
     return value;
 }
 
-/// RAII: sets a GL mode and restores it.
-class ModeScope
+void setMode(GLenum mode, bool isOn)
 {
-public:
-    ModeScope(GLenum mode, bool isOn) : _mode(mode), _wasOn(glIsEnabled(mode) == GL_TRUE), _isOn(isOn) { set(_isOn); }
-    ~ModeScope() { set(_wasOn); }
-    ModeScope(const ModeScope&) = delete;
-    ModeScope& operator=(const ModeScope&) = delete;
-
-private:
-    void set(bool isOn) const
-    {
-        if (_wasOn == _isOn) return;
-        if (isOn)
-            glEnable(_mode);
-        else
-            glDisable(_mode);
-    }
-
-    GLenum _mode;
-    bool _wasOn, _isOn;
-};
+    if (isOn)
+        glEnable(mode);
+    else
+        glDisable(mode);
+}
 
 /// RAII: GL draws whole pictures into framebuffer objects, whatever the scene has set. The destructor restores what GL
 /// had, which is what OSG expects. Only the texture of the active unit is left to the caller.
@@ -64,13 +42,12 @@ public:
     {
         state.unbindPixelBufferObject();
         for (const GLenum mode : {GL_DEPTH_TEST, GL_BLEND, GL_SCISSOR_TEST, GL_CULL_FACE, GL_COLOR_LOGIC_OP})
-            _modes.push_back(std::make_unique<ModeScope>(mode, false));
+            change(mode, false);
         for (GLenum plane = 0; plane < 6; ++plane)
-            _modes.push_back(std::make_unique<ModeScope>(GL_CLIP_PLANE0 + plane, false));
+            change(GL_CLIP_PLANE0 + plane, false);
         // The core profile does not know it.
-        if (state.getLastAppliedMode(GL_ALPHA_TEST))
-            _modes.push_back(std::make_unique<ModeScope>(GL_ALPHA_TEST, false));
-        _modes.push_back(std::make_unique<ModeScope>(GL_TEXTURE_CUBE_MAP_SEAMLESS, true));
+        if (state.getLastAppliedMode(GL_ALPHA_TEST)) change(GL_ALPHA_TEST, false);
+        change(GL_TEXTURE_CUBE_MAP_SEAMLESS, true);
         glGetIntegerv(GL_VIEWPORT, _viewport);
         glGetIntegerv(GL_POLYGON_MODE, _polygonMode);
         glGetBooleanv(GL_COLOR_WRITEMASK, _colorMask);
@@ -97,12 +74,20 @@ public:
         glColorMask(_colorMask[0], _colorMask[1], _colorMask[2], _colorMask[3]);
         restorePolygonMode();
         glViewport(_viewport[0], _viewport[1], _viewport[2], _viewport[3]);
+        for (const auto& [mode, wasOn] : _modes)
+            setMode(mode, wasOn);
     }
 
     DrawingScope(const DrawingScope&) = delete;
     DrawingScope& operator=(const DrawingScope&) = delete;
 
 private:
+    void change(GLenum mode, bool isOn)
+    {
+        _modes.emplace_back(mode, glIsEnabled(mode) == GL_TRUE);
+        setMode(mode, isOn);
+    }
+
     /// The core profile has one mode for both sides.
     void restorePolygonMode() const
     {
@@ -112,7 +97,7 @@ private:
     }
 
     osg::GLExtensions* _gl;
-    std::vector<std::unique_ptr<ModeScope>> _modes;
+    std::vector<std::pair<GLenum, bool>> _modes; ///< whether they were on
     GLint _viewport[4], _polygonMode[2] = {GL_FILL, 0};
     GLboolean _colorMask[4];
     GLint _drawFramebuffer = valueOf(GL_DRAW_FRAMEBUFFER_BINDING_EXT);

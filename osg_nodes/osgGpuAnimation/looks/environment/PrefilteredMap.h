@@ -5,10 +5,6 @@
 
 #include <osg/TextureCubeMap>
 
-#ifndef GL_TEXTURE_CUBE_MAP_SEAMLESS
-#define GL_TEXTURE_CUBE_MAP_SEAMLESS 0x884F
-#endif
-
 namespace osgGpuAnimation
 {
 

@@ -9,15 +9,9 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <sstream>
 #include <string>
-
-#ifndef GL_HALF_FLOAT
-#define GL_HALF_FLOAT 0x140B
-#endif
-#ifndef GL_RG
-#define GL_RG 0x8227
-#endif
 
 namespace osgGpuAnimation
 {
@@ -56,26 +50,12 @@ struct PixelFormat
 
 PixelFormat formatOf(GLenum format)
 {
-    switch (format)
-    {
-    case GL_LUMINANCE:
-    case GL_RED:
-        return {1, 0, 0, 0};
-    case GL_LUMINANCE_ALPHA:
-        return {2, 0, 0, 0};
-    case GL_RG:
-        return {2, 0, 1, 1};
-    case GL_RGB:
-        return {3, 0, 1, 2};
-    case GL_RGBA:
-        return {4, 0, 1, 2};
-    case GL_BGR:
-        return {3, 2, 1, 0};
-    case GL_BGRA:
-        return {4, 2, 1, 0};
-    default:
-        return {};
-    }
+    static const std::map<GLenum, PixelFormat> formats = {
+        {GL_LUMINANCE, {1, 0, 0, 0}}, {GL_RED, {1, 0, 0, 0}}, {GL_LUMINANCE_ALPHA, {2, 0, 0, 0}},
+        {GL_RG, {2, 0, 1, 1}},        {GL_RGB, {3, 0, 1, 2}}, {GL_RGBA, {4, 0, 1, 2}},
+        {GL_BGR, {3, 2, 1, 0}},       {GL_BGRA, {4, 2, 1, 0}}};
+    const auto known = formats.find(format);
+    return known == formats.end() ? PixelFormat() : known->second;
 }
 
 bool isReadable(GLenum type)

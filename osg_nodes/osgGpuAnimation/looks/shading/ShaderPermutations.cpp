@@ -31,12 +31,6 @@ namespace
 
 constexpr unsigned int generatedUnits = 8; ///< texture units with coordinate generation in OpenGL 2
 
-template <typename Attribute>
-const Attribute* applied(const osg::State& state, osg::StateAttribute::Type type, unsigned int member = 0)
-{
-    return static_cast<const Attribute*>(state.getLastAppliedAttribute(type, member));
-}
-
 /// The value of a mode in the stack of state sets. In the core profile OSG does not switch the fixed pipeline's modes,
 /// but users still set them.
 template <typename ModeOf>
@@ -157,15 +151,8 @@ ShaderKey::Fog fogOf(osg::State& state)
 {
     const auto* fog = applied<osg::Fog>(state, osg::StateAttribute::FOG);
     if (!fog || !isModeOn(state, GL_FOG)) return ShaderKey::Fog::None;
-    switch (fog->getMode())
-    {
-    case osg::Fog::LINEAR:
-        return ShaderKey::Fog::Linear;
-    case osg::Fog::EXP:
-        return ShaderKey::Fog::Exp;
-    default:
-        return ShaderKey::Fog::Exp2;
-    }
+    if (fog->getMode() == osg::Fog::LINEAR) return ShaderKey::Fog::Linear;
+    return fog->getMode() == osg::Fog::EXP ? ShaderKey::Fog::Exp : ShaderKey::Fog::Exp2;
 }
 
 void readLights(osg::State& state, ShaderKey& surface)
@@ -262,19 +249,6 @@ void setMaterial(osg::State& state)
     gl.glUniform3fv(program->getUniformLocation(emissionName), 1, emission.ptr());
 }
 
-osg::ref_ptr<osg::Texture2D> makeWhiteTexture()
-{
-    osg::ref_ptr<osg::Image> image = new osg::Image;
-    image->allocateImage(1, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE);
-    image->setColor(osg::Vec4(1, 1, 1, 1), 0, 0);
-    osg::ref_ptr<osg::Texture2D> white = new osg::Texture2D(image);
-    white->setName(whiteTextureName);
-    // OSG's default, GL_CLAMP, blends with the black border.
-    white->setWrap(osg::Texture::WRAP_S, osg::Texture::REPEAT);
-    white->setWrap(osg::Texture::WRAP_T, osg::Texture::REPEAT);
-    return white;
-}
-
 } // namespace
 
 ShaderKey ShaderKey::of(osg::State& state)
@@ -324,7 +298,19 @@ bool isWhiteTexture(const osg::StateAttribute* texture)
 osg::ref_ptr<osg::Texture2D> whiteTexture()
 {
     static SharedObject<osg::Texture2D> shared;
-    return shared.get(makeWhiteTexture);
+    const auto make = []
+    {
+        osg::ref_ptr<osg::Image> image = new osg::Image;
+        image->allocateImage(1, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE);
+        image->setColor(osg::Vec4(1, 1, 1, 1), 0, 0);
+        osg::ref_ptr<osg::Texture2D> white = new osg::Texture2D(image);
+        white->setName(whiteTextureName);
+        // OSG's default, GL_CLAMP, blends with the black border.
+        white->setWrap(osg::Texture::WRAP_S, osg::Texture::REPEAT);
+        white->setWrap(osg::Texture::WRAP_T, osg::Texture::REPEAT);
+        return white;
+    };
+    return shared.get(make);
 }
 
 ShaderPermutations::ShaderPermutations(osg::Shader* skin) : _skin(skin)

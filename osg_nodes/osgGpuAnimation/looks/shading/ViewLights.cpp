@@ -103,12 +103,6 @@ void setLight(const Uniforms& uniforms, const LightNames& names, const ViewLight
     uniforms.set(names.quadraticAttenuation, light.getQuadraticAttenuation());
 }
 
-template <typename Attribute>
-const Attribute* appliedTo(const osg::State& state, osg::StateAttribute::Type type)
-{
-    return static_cast<const Attribute*>(state.getLastAppliedAttribute(type));
-}
-
 /// Of a render stage, kept in its list of lights.
 struct StageState : public osg::StateSet
 {
@@ -190,13 +184,13 @@ void setFixedPipelineUniforms(osg::State& state, unsigned int lights)
     const LightList placed = lights != 0 ? ViewLights::of(state) : LightList();
     for (std::size_t i = 0; i < placed.size(); ++i)
         if ((lights & (1u << i)) != 0 && placed[i].light) setLight(uniforms, names[i], placed[i]);
-    const auto* model = appliedTo<osg::LightModel>(state, osg::StateAttribute::LIGHTMODEL);
+    const auto* model = applied<osg::LightModel>(state, osg::StateAttribute::LIGHTMODEL);
     uniforms.set(ambient, model ? model->getAmbientIntensity() : osg::Vec4(0.2f, 0.2f, 0.2f, 1.0f));
-    const auto* material = appliedTo<osg::Material>(state, osg::StateAttribute::MATERIAL);
+    const auto* material = applied<osg::Material>(state, osg::StateAttribute::MATERIAL);
     osg::Vec4 specular = material ? material->getSpecular(osg::Material::FRONT) : osg::Vec4();
     specular.w() = material ? material->getShininess(osg::Material::FRONT) : 0.0f;
     uniforms.set(shine, specular);
-    const auto* fog = appliedTo<osg::Fog>(state, osg::StateAttribute::FOG);
+    const auto* fog = applied<osg::Fog>(state, osg::StateAttribute::FOG);
     if (!fog) return;
     uniforms.set(fogColor, fog->getColor());
     uniforms.set(fogRange, osg::Vec4(fog->getDensity(), fog->getStart(), fog->getEnd(),

@@ -4,7 +4,6 @@
 #include <osg/GLExtensions>
 #include <osg/Light>
 #include <osg/Matrix>
-#include <osg/Program>
 #include <osg/StateAttribute>
 #include <osgUtil/CullVisitor>
 #include <osgUtil/RenderStage>
@@ -80,6 +79,13 @@ public:
 protected:
     ~ViewLightsCallback() override = default;
 };
+
+/// The attribute of that type in the present state; null: none.
+template <typename Attribute>
+const Attribute* applied(const osg::State& state, osg::StateAttribute::Type type, unsigned int member = 0)
+{
+    return static_cast<const Attribute*>(state.getLastAppliedAttribute(type, member));
+}
 
 /// True if the context has a core profile, where OSG draws with its matrix uniforms, or OSG was built without the fixed
 /// pipeline. On the draw side only.

@@ -36,11 +36,4 @@ osg::ref_ptr<const SkinnedGeometry> MeshDetail::snapshot(const SkinnedGeometry& 
     return copy;
 }
 
-std::shared_ptr<const LodLevels> MeshDetail::levels(const SkinnedGeometry& mesh, const AnimationSet& set)
-{
-    return mesh._lod->of(mesh, set,
-                         [&](const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& out)
-                         { mesh.computePositions(palette, out); });
-}
-
 } // namespace osgGpuAnimation

@@ -12,10 +12,7 @@ namespace osgGpuAnimation
 /// What the kit's own code and plugins need of a SkinnedGeometry, and applications do not: its levels of detail.
 struct MeshDetail
 {
-    /// The levels, see CharacterMeshes::setPixelError(). The first call creates them from poses of the set, in the
-    /// calling thread.
-    static std::shared_ptr<const LodLevels> levels(const SkinnedGeometry& mesh, const AnimationSet& set);
-    /// The same without creating any. Null: not created, or the mesh has changed.
+    /// The levels, see CharacterMeshes::setPixelError(). Null: there are none yet, or the mesh has changed.
     static std::shared_ptr<const LodLevels> findLevels(const SkinnedGeometry& mesh) { return mesh._lod->known(mesh); }
     /// levels: of this mesh, see LodLevels::restored().
     static void setLevels(SkinnedGeometry& mesh, std::shared_ptr<const LodLevels> levels)
@@ -26,7 +23,7 @@ struct MeshDetail
     /// from, without its StateSet, callbacks and user data.
     static osg::ref_ptr<const SkinnedGeometry> snapshot(const SkinnedGeometry& mesh);
     static unsigned int forgetCount(const SkinnedGeometry& mesh) { return mesh._lod->forgetCount(); }
-    /// For example after a change of the clips; levels() creates new ones.
+    /// For example after a change of the clips.
     static void forgetLevels(SkinnedGeometry& mesh) { mesh._lod->forget(); }
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/mesh/geometry/MeshNames.h>
 
+#include <osgGpuAnimation/mesh/geometry/MaterialVariants.h>
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 
 #include <osg/ValueObject>
@@ -42,6 +43,18 @@ Result<std::vector<SkinnedGeometry*>> meshesNamed(const osg::Group& group, const
     if (!ofNode.empty()) return ofNode;
     if (!ofMesh.empty()) return ofMesh;
     return Error{"there is no mesh \"" + name + "\"; the meshes are " + quotedNames(names)};
+}
+
+std::vector<std::string> variantNamesIn(const osg::Group& group)
+{
+    std::vector<std::string> names = variantNamesOf(group);
+    const auto addNames = [&](const SkinnedGeometry& mesh)
+    {
+        for (const std::string& name : variantNamesOf(mesh))
+            if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    };
+    forEachMesh(group, addNames);
+    return names;
 }
 
 } // namespace osgGpuAnimation

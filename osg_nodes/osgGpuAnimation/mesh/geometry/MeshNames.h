@@ -22,4 +22,7 @@ std::string meshNameOf(const osg::Object& drawable);
 /// Error: there are none; the message lists the names of the first kind.
 Result<std::vector<SkinnedGeometry*>> meshesNamed(const osg::Group& group, const std::string& name);
 
+/// The names of the group's material variants in the file's order, then of those of its meshes, as of garments.
+std::vector<std::string> variantNamesIn(const osg::Group& group);
+
 } // namespace osgGpuAnimation

@@ -9,6 +9,8 @@
 #include <osg/Program>
 
 #include <algorithm>
+#include <initializer_list>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -45,60 +47,6 @@ private:
     std::vector<MorphTarget> _targets;
 };
 
-/// The textures in use, by their source arrays (with modified counts) and number of vertices.
-class PackedDeltas
-{
-public:
-    using Source = std::pair<std::vector<std::pair<const osg::Array*, unsigned int>>, std::size_t>;
-
-    static PackedDeltas& instance()
-    {
-        static PackedDeltas deltas;
-        return deltas;
-    }
-
-    static Source sourceOf(const std::vector<MorphTarget>& targets, std::size_t vertexCount)
-    {
-        Source source{{}, vertexCount};
-        for (const MorphTarget& target : targets)
-            for (const osg::Array* array : {static_cast<const osg::Array*>(target.positions.get()),
-                                            static_cast<const osg::Array*>(target.normals.get()),
-                                            static_cast<const osg::Array*>(target.colors.get()),
-                                            static_cast<const osg::Array*>(target.textureCoordinates.get()),
-                                            static_cast<const osg::Array*>(target.tangents.get())})
-                source.first.emplace_back(array, array ? array->getModifiedCount() : 0);
-        return source;
-    }
-
-    osg::ref_ptr<osg::TextureBuffer> find(const Source& source)
-    {
-        const std::lock_guard<std::mutex> lock(_mutex);
-        const auto found = _textures.find(source);
-        osg::ref_ptr<osg::TextureBuffer> texture;
-        if (found != _textures.end()) found->second.lock(texture);
-        return texture;
-    }
-
-    void add(Source source, osg::TextureBuffer* texture)
-    {
-        const std::lock_guard<std::mutex> lock(_mutex);
-        if (_textures.size() >= 2 * _used) dropUnused();
-        _textures[std::move(source)] = texture;
-    }
-
-private:
-    void dropUnused()
-    {
-        for (auto texture = _textures.begin(); texture != _textures.end();)
-            texture = texture->second.valid() ? std::next(texture) : _textures.erase(texture);
-        _used = std::max<std::size_t>(_textures.size(), 16);
-    }
-
-    std::mutex _mutex;
-    std::map<Source, osg::observer_ptr<osg::TextureBuffer>> _textures;
-    std::size_t _used = 16; ///< at the last dropUnused()
-};
-
 osg::ref_ptr<osg::TextureBuffer> packTexture(const std::vector<MorphTarget>& targets, std::size_t vertexCount,
                                              const std::array<int, 5>& channels)
 {
@@ -123,6 +71,31 @@ osg::ref_ptr<osg::TextureBuffer> packTexture(const std::vector<MorphTarget>& tar
     return texture;
 }
 
+/// The texture of those arrays while it is in use, or a new one.
+osg::ref_ptr<osg::TextureBuffer> sharedTexture(const std::vector<MorphTarget>& targets, std::size_t vertexCount,
+                                               const std::array<int, 5>& channels)
+{
+    /// The arrays with their modified counts, and the number of vertices.
+    using Source = std::pair<std::vector<std::pair<const osg::Array*, unsigned int>>, std::size_t>;
+    static std::mutex mutex;
+    static std::map<Source, osg::observer_ptr<osg::TextureBuffer>> textures;
+    Source source{{}, vertexCount};
+    for (const MorphTarget& target : targets)
+        for (const osg::Array* array :
+             std::initializer_list<const osg::Array*>{target.positions.get(), target.normals.get(), target.colors.get(),
+                                                      target.textureCoordinates.get(), target.tangents.get()})
+            source.first.emplace_back(array, array ? array->getModifiedCount() : 0);
+    const std::lock_guard<std::mutex> lock(mutex);
+    for (auto texture = textures.begin(); texture != textures.end();)
+        texture = texture->second.valid() ? std::next(texture) : textures.erase(texture);
+    osg::observer_ptr<osg::TextureBuffer>& known = textures[std::move(source)];
+    osg::ref_ptr<osg::TextureBuffer> texture;
+    if (known.lock(texture)) return texture;
+    texture = packTexture(targets, vertexCount, channels);
+    known = texture;
+    return texture;
+}
+
 } // namespace
 
 MorphDeltas packMorphTargets(const std::vector<MorphTarget>& targets, std::size_t vertexCount)
@@ -134,11 +107,7 @@ MorphDeltas packMorphTargets(const std::vector<MorphTarget>& targets, std::size_
     if (anyHas(targets, &MorphTarget::textureCoordinates)) channels[3] = channels[0]++;
     if (anyHas(targets, &MorphTarget::tangents)) channels[4] = channels[0]++;
 
-    const PackedDeltas::Source source = PackedDeltas::sourceOf(targets, vertexCount);
-    deltas.texture = PackedDeltas::instance().find(source);
-    if (deltas.texture) return deltas;
-    deltas.texture = packTexture(targets, vertexCount, channels);
-    PackedDeltas::instance().add(source, deltas.texture);
+    deltas.texture = sharedTexture(targets, vertexCount, channels);
     return deltas;
 }
 

@@ -28,16 +28,6 @@ inline osg::BoundingBox toOsg(const Box& box)
     return {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z};
 }
 
-/// The box in the type of animation/; invalid: empty.
-inline Box toBox(const osg::BoundingBox& box)
-{
-    Box result;
-    if (!box.valid()) return result;
-    result.add({box.xMin(), box.yMin(), box.zMin()});
-    result.add({box.xMax(), box.yMax(), box.zMax()});
-    return result;
-}
-
 /// function(SkinnedGeometry&), for every mesh at or below the node, hidden ones included; not those of characters and
 /// crowds below a character or crowd, as a rider is below a horse. See SceneVisitor for broken scenes.
 template <typename Function>
@@ -140,5 +130,17 @@ private:
 
 /// The boxes of the meshes, as MixBounds needs them. set: of the meshes.
 MixBounds::Boxes mixBoxesOf(const std::vector<const SkinnedGeometry*>& meshes, const AnimationSet& set);
+
+/// The bounds of the clips of a set for some meshes, in the file's axes. boxes: mixBoxesOf() them.
+struct ClipBoxes
+{
+    ClipBoxes(const AnimationSet& set, MixBounds::Boxes boxes)
+        : ofClips(boundsOfClips(set, boxes.ofClips)), ofMixes(set, std::move(boxes))
+    {
+    }
+
+    std::vector<Box> ofClips; ///< rest pose, then one per clip
+    MixBounds ofMixes;
+};
 
 } // namespace osgGpuAnimation

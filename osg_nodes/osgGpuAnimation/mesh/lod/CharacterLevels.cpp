@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/mesh/detail/MeshDetail.h>
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/mesh/lod/CharacterLevels.h>
 
 #include <osgGpuAnimation/animation/Pose.h>
-#include <osgGpuAnimation/mesh/lod/MergedMesh.h>
+#include <osgGpuAnimation/authoring/mesh/MeshSimplifier.h>
+#include <osgGpuAnimation/mesh/lod/MergedViews.h>
+
+#include <glm/common.hpp>
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 
 namespace osgGpuAnimation
@@ -49,6 +52,102 @@ std::size_t trianglesOf(const SkinnedGeometry& merged)
     return merged.getPrimitiveSet(0)->getNumIndices() / 3;
 }
 
+constexpr double maxForOutlines = 0.3, maxForCoverage = 0.045; ///< moves of vertices, as shares of the limit
+constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+/// MergedParts as one mesh with colours in its vertices instead of textures and flat triangles, reduced to coarse
+/// levels of detail. The parts' pieces are joined where they are nearer to each other than the error of a level. The
+/// vertices are moved and coloured until the mesh looks like the parts, see MergedViews. A temporary object:
+///
+///     MergedMesh merged(parts);
+///     merged.reduce(error);
+///     if (merged.fit() <= maxError && merged.similarity(pixel) > 0.98) draw(merged.make());
+class MergedMesh
+{
+public:
+    /// parts: valid; they must outlive this object.
+    explicit MergedMesh(const MergedParts& parts);
+
+    /// Reduces the triangles as far as an error permits, in the set's units. Call it with ascending errors.
+    void reduce(double error);
+    std::size_t triangleCount() const { return _simplifier.triangleCount(); } ///< of the remaining triangles
+    /// Moves and colours the remaining vertices; there must be some. Returns the largest distance of a vertex of the
+    /// parts from the mesh in all poses, in the set's units.
+    double fit();
+    /// See MergedViews::similarity(); of the last fit().
+    double similarity(double pixel) const { return _views.similarity(_shades, pixel); }
+    /// The mesh of the last fit(), without a StateSet, see SurfaceColor::flatState().
+    osg::ref_ptr<SkinnedGeometry> make() const { return _parts.geometryOf(_mesh); }
+    const osg::Vec2& metallicRoughness() const { return _views.metallicRoughness(); } ///< the mean of the visible map
+
+private:
+    void takeTriangles();
+
+    const MergedParts& _parts;
+    MeshSimplifier _simplifier;
+    MergedViews _views;
+    double _limit = 0.0;        ///< of the last reduce()
+    std::size_t _worstPose = 0; ///< of the last error
+    CoarseMesh _mesh;
+    MergedViews::Shades _shades;          ///< of _mesh
+    std::vector<std::uint32_t> _vertexOf; ///< by point of the simplifier's mesh: in _mesh
+};
+
+MergedMesh::MergedMesh(const MergedParts& parts)
+    : _parts(parts), _simplifier(parts.surface(), parts.indices()), _views(parts)
+{
+}
+
+void MergedMesh::reduce(double error)
+{
+    _limit = error;
+    _simplifier.reduce(error, false, true);
+}
+
+double MergedMesh::fit()
+{
+    takeTriangles();
+    const std::vector<glm::vec3> unmoved = _mesh.positions;
+    _views.fitOutlines(_mesh, maxForOutlines * _limit);
+    _views.fitCoverage(_mesh, maxForCoverage * _limit);
+    const std::vector<glm::vec3> moved = _mesh.positions;
+    // A coarser level would cost more triangles than the moves gain.
+    const double enough = LodLevels::errorOf(LodLevels::levelFor(_limit));
+    PosedSurface::Poses poses;
+    double error = 0.0;
+    for (const float share : {1.0f, 0.5f, 0.25f})
+    {
+        const bool isLast = share == 0.25f;
+        for (std::size_t vertex = 0; vertex < moved.size(); ++vertex)
+            _mesh.positions[vertex] = glm::mix(unmoved[vertex], moved[vertex], share);
+        poses = _parts.posesOf(_mesh);
+        error = _simplifier.errorOfMoved(poses, _vertexOf, isLast ? std::numeric_limits<double>::infinity() : enough,
+                                         _worstPose);
+        if (error <= enough) break;
+    }
+    _shades = _views.fitColors(_mesh, poses);
+    return error;
+}
+
+/// Takes the remaining triangles, with one vertex a point.
+void MergedMesh::takeTriangles()
+{
+    const MeshConnectivity& reduced = _simplifier.mesh();
+    _mesh = {};
+    _vertexOf.assign(reduced.pointCount(), none);
+    for (const std::uint32_t corner : _views.oneSided(_simplifier.indices()))
+    {
+        const std::uint32_t point = reduced.pointOf(corner);
+        if (_vertexOf[point] == none)
+        {
+            _vertexOf[point] = static_cast<std::uint32_t>(_mesh.sources.size());
+            _mesh.sources.push_back(reduced.verticesOf(point).front());
+            _mesh.positions.push_back(_parts.surface().poses.front()[_mesh.sources.back()]);
+        }
+        _mesh.indices.push_back(_vertexOf[point]);
+    }
+}
+
 } // namespace
 
 CharacterLevels::Part::Part(const SkinnedGeometry& mesh)
@@ -87,20 +186,6 @@ std::vector<CharacterLevels::Part> CharacterLevels::partsOf(const osg::Group& me
     std::vector<Part> parts;
     forEachMesh(meshes, [&](const SkinnedGeometry& mesh) { parts.emplace_back(mesh); });
     return parts;
-}
-
-CharacterLevels::CharacterLevels(const osg::Group& meshes, const AnimationSet& set)
-    : CharacterLevels(partsOf(meshes), set)
-{
-    std::vector<Sources::Mesh> all;
-    for (const Part& part : _parts)
-        all.push_back({part.mesh, part.mesh});
-    const Sources sources(all);
-    if (sources.isEmpty()) return;
-    Sources::Levels levels;
-    for (const Part& part : _parts)
-        levels.push_back(MeshDetail::levels(*part.mesh, set));
-    includeMade(sources.make(set, levels, nullptr));
 }
 
 CharacterLevels::Sources::Sources(const std::vector<Mesh>& meshes, bool keepsParts) : _keepsParts(keepsParts)

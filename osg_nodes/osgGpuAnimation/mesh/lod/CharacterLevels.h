@@ -29,9 +29,6 @@ public:
     static constexpr std::size_t maxParts = 256;          ///< a character of more has no such levels
     static constexpr std::size_t maxVertices = 1'000'000; ///< a character of more has no such levels
 
-    /// Creates the levels of the meshes among the group's children (see forEachMesh()) in 0.5 to 5 s.
-    CharacterLevels(const osg::Group& meshes, const AnimationSet& set);
-
     struct Step
     {
         int level = LodLevels::allTriangles; ///< and coarser ones
@@ -55,7 +52,7 @@ public:
         Merged merged; ///< the meshes have no StateSets
         osg::Vec2 metallicRoughness;
     };
-    /// Without levels yet, for includeMade().
+    /// Of the meshes among the group's children (see forEachMesh()), without levels yet, for includeMade().
     static std::shared_ptr<CharacterLevels> unmade(const osg::Group& meshes, const AnimationSet& set)
     {
         return std::shared_ptr<CharacterLevels>(new CharacterLevels(partsOf(meshes), set));

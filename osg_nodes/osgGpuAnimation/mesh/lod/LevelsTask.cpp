@@ -59,23 +59,19 @@ public:
     void stop() { _stop = true; }
     bool isStopped() const { return _stop; }
     bool isDone() const { return _isDone; }
-    void runOnce()
+    /// Concurrent calls wait for the one that does the work.
+    void run()
     {
-        if (_isBegun.exchange(true)) return;
-        run();
-        const std::lock_guard<std::mutex> lock(_mutex);
-        _isDone = true;
-        _done.notify_all();
-    }
-    void wait()
-    {
-        runOnce();
-        std::unique_lock<std::mutex> lock(_mutex);
-        _done.wait(lock, [&] { return _isDone.load(); });
+        std::call_once(_begun,
+                       [this]
+                       {
+                           make();
+                           _isDone = true;
+                       });
     }
 
 private:
-    void run()
+    void make()
     {
         CharacterLevels::Sources::Levels levels;
         for (Mesh& mesh : meshes)
@@ -90,9 +86,8 @@ private:
     }
 
     const std::shared_ptr<const AnimationSet> _set;
-    std::atomic<bool> _stop{false}, _isBegun{false}, _isDone{false};
-    std::mutex _mutex;
-    std::condition_variable _done;
+    std::atomic<bool> _stop{false}, _isDone{false};
+    std::once_flag _begun;
 };
 
 namespace
@@ -157,7 +152,7 @@ private:
             _running = std::move(_queue.front());
             _queue.pop_front();
             lock.unlock();
-            if (!_running->isStopped()) _running->runOnce();
+            if (!_running->isStopped()) _running->run();
             lock.lock();
             _running = nullptr;
         }
@@ -271,7 +266,7 @@ bool LevelsTask::isDone() const
 
 void LevelsTask::wait()
 {
-    _work->wait();
+    _work->run();
 }
 
 std::shared_ptr<const CharacterLevels> LevelsTask::take()

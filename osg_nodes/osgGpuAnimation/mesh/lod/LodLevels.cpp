@@ -251,11 +251,6 @@ LodLevels::LodLevels(const osg::Geometry& mesh)
         _primitives.push_back({primitives, primitives ? primitives->getModifiedCount() : 0, {}});
 }
 
-LodLevels::LodLevels(const osg::Geometry& mesh, const AnimationSet& set, const Skinning& skin) : LodLevels(mesh)
-{
-    addSteps(mesh, set, skin, nullptr);
-}
-
 void LodLevels::addSteps(const osg::Geometry& copy, const AnimationSet& set, const Skinning& skin,
                          const std::atomic<bool>* stop)
 {
@@ -409,42 +404,16 @@ double LodLevels::foundError(int level) const
     return error;
 }
 
-void LodLevels::releaseGLObjects(osg::State* state) const
-{
-    _buffer->releaseGLObjects(state);
-}
-
-void LodLevels::resizeGLObjectBuffers(unsigned int maxSize) const
-{
-    _buffer->resizeGLObjectBuffers(maxSize);
-}
-
 std::shared_ptr<const LodLevels> MeshLod::known(const osg::Geometry& mesh) const
 {
     std::shared_ptr<const LodLevels> levels = std::atomic_load(&_levels);
     return levels && levels->isOf(mesh) ? levels : nullptr;
 }
 
-std::shared_ptr<const LodLevels> MeshLod::of(const osg::Geometry& mesh, const AnimationSet& set,
-                                             const LodLevels::Skinning& skin) const
-{
-    if (std::shared_ptr<const LodLevels> levels = known(mesh)) return levels;
-    const std::lock_guard<std::mutex> lock(_mutex);
-    if (std::shared_ptr<const LodLevels> levels = known(mesh)) return levels;
-    auto made = std::make_shared<const LodLevels>(mesh, set, skin);
-    std::atomic_store(&_levels, std::shared_ptr<const LodLevels>(made));
-    return made;
-}
-
 void MeshLod::forget()
 {
     ++_forgetCount;
     set(nullptr);
-}
-
-void MeshLod::set(std::shared_ptr<const LodLevels> levels)
-{
-    std::atomic_store(&_levels, std::move(levels));
 }
 
 } // namespace osgGpuAnimation

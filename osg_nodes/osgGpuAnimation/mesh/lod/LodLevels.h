@@ -14,7 +14,6 @@
 #include <functional>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <set>
 #include <vector>
 
@@ -75,11 +74,10 @@ public:
     using Skinning =
         std::function<void(const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& outPositions)>;
 
-    /// The cost is proportional to the mesh's points times poses, see MeshSimplifier.
-    LodLevels(const osg::Geometry& mesh, const AnimationSet& set, const Skinning& skin);
     /// Levels of the mesh without steps, for addSteps().
     explicit LodLevels(const osg::Geometry& mesh);
-    /// copy: of the mesh as it was in the constructor. skin: the copy's. stop: see PosedSurface.
+    /// The cost is proportional to the mesh's points times poses, see MeshSimplifier.
+    /// copy: the mesh, or a copy of it, as it was in the constructor. skin: the copy's. stop: see PosedSurface.
     void addSteps(const osg::Geometry& copy, const AnimationSet& set, const Skinning& skin,
                   const std::atomic<bool>* stop);
     /// Shares the steps of the levels of a mesh with equal vertices and primitives.
@@ -123,8 +121,8 @@ public:
     /// Whole triangles, by vertex; empty for null, other primitives and vertices that do not exist.
     static std::vector<std::uint32_t> trianglesOf(const osg::PrimitiveSet* primitives, std::size_t vertexCount);
 
-    void releaseGLObjects(osg::State* state) const;
-    void resizeGLObjectBuffers(unsigned int maxSize) const;
+    void releaseGLObjects(osg::State* state) const { _buffer->releaseGLObjects(state); }
+    void resizeGLObjectBuffers(unsigned int maxSize) const { _buffer->resizeGLObjectBuffers(maxSize); }
 
 private:
     struct Primitives
@@ -147,8 +145,7 @@ private:
     int _coarsest = allTriangles;
 };
 
-/// The cached LodLevels of a mesh, created on demand, once for all threads, and again after a change of the mesh's
-/// vertices or primitives. Copies share them.
+/// The LodLevels of a mesh until its vertices or primitives change. Copies of the mesh share them.
 class MeshLod
 {
 public:
@@ -156,19 +153,15 @@ public:
     MeshLod(const MeshLod& other) : _levels(std::atomic_load(&other._levels)) {}
     MeshLod& operator=(const MeshLod&) = delete;
 
-    /// Concurrent calls wait for the thread that creates the levels.
-    std::shared_ptr<const LodLevels> of(const osg::Geometry& mesh, const AnimationSet& set,
-                                        const LodLevels::Skinning& skin) const;
     /// Null: not created, or the mesh has changed.
     std::shared_ptr<const LodLevels> known(const osg::Geometry& mesh) const;
-    void set(std::shared_ptr<const LodLevels> levels); ///< in place of those that of() would create
+    void set(std::shared_ptr<const LodLevels> levels) { std::atomic_store(&_levels, std::move(levels)); }
     /// Discards the levels after a change of influences, morph targets or clips.
     void forget();
     unsigned int forgetCount() const { return _forgetCount; } ///< of calls of forget()
 
 private:
-    mutable std::mutex _mutex;
-    mutable std::shared_ptr<const LodLevels> _levels; ///< accessed atomically
+    std::shared_ptr<const LodLevels> _levels; ///< accessed atomically
     std::atomic<unsigned int> _forgetCount{0};
 };
 

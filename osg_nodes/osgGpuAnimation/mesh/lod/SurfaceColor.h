@@ -5,7 +5,6 @@
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 
 #include <osg/StateSet>
-#include <osg/Texture2D>
 #include <osg/Vec2>
 #include <osg/Vec4>
 

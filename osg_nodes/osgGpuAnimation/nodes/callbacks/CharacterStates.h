@@ -2,6 +2,8 @@
 #pragma once
 
 #include <osg/observer_ptr>
+#include <osg/Transform>
+#include <osgUtil/CullVisitor>
 
 #include <algorithm>
 #include <cmath>
@@ -15,27 +17,6 @@ namespace osgGpuAnimation
 
 class AnimatedCharacter;
 
-/// The distance from which cameras saw a character last.
-class SeenDistance
-{
-public:
-    void sawFrom(double distance, unsigned int frame)
-    {
-        _distance = frame == _frame ? std::min(_distance, distance) : distance;
-        _frame = frame;
-    }
-    /// True if a camera has drawn the character in the last frame within the distance, or if the distance is infinite.
-    /// frame: the present one, in which no camera has culled yet.
-    bool isWithin(double distance, unsigned int frame) const
-    {
-        return std::isinf(distance) || (_frame && frame - *_frame <= 1u && _distance <= distance);
-    }
-
-private:
-    double _distance = 0.0; ///< in world units, in the frame _frame
-    std::optional<unsigned int> _frame;
-};
-
 /// The states that a callback keeps for the characters that share it. Cameras may cull concurrently.
 template <typename State>
 class CharacterStates
@@ -48,17 +29,25 @@ public:
         return entryOf(character).state;
     }
 
-    /// Records the distance of a camera that draws the character, in world units. frame: the camera's.
-    void sawFrom(AnimatedCharacter& character, double distance, unsigned int frame)
+    /// Records the distance of a camera that culls the character at the end of the visitor's path, in world units.
+    void see(AnimatedCharacter& character, osgUtil::CullVisitor& visitor)
     {
+        const osg::Vec3d eye = visitor.getCurrentCamera()->getInverseViewMatrix().getTrans();
+        const double distance = (osg::computeLocalToWorld(visitor.getNodePath()).getTrans() - eye).length();
+        const unsigned int frame = visitor.getFrameStamp()->getFrameNumber();
         const std::lock_guard<std::mutex> lock(_mutex);
-        entryOf(character).seen.sawFrom(distance, frame);
+        Entry& entry = entryOf(character);
+        entry.distance = entry.frame == frame ? std::min(entry.distance, distance) : distance;
+        entry.frame = frame;
     }
-    /// See SeenDistance::isWithin().
+
+    /// True if a camera has drawn the character in the last frame within the distance, or if the distance is infinite.
+    /// frame: the present one, in which no camera has culled yet.
     bool isWithin(AnimatedCharacter& character, double distance, unsigned int frame)
     {
         const std::lock_guard<std::mutex> lock(_mutex);
-        return entryOf(character).seen.isWithin(distance, frame);
+        const Entry& entry = entryOf(character);
+        return std::isinf(distance) || (entry.frame && frame - *entry.frame <= 1u && entry.distance <= distance);
     }
 
     void clear() { _states.clear(); }
@@ -77,7 +66,8 @@ private:
     {
         osg::observer_ptr<AnimatedCharacter> character;
         State state;
-        SeenDistance seen;
+        double distance = 0.0; ///< from which cameras saw it in that frame
+        std::optional<unsigned int> frame;
     };
 
     /// The mutex is locked.

@@ -38,11 +38,6 @@ osg::Matrixd toWorld(const osg::Node& node, bool isOwn)
     return osg::computeLocalToWorld(path);
 }
 
-void WorldTargets::set(Instance instance, const std::string& constraint, const Target& target)
-{
-    _targets[{instance, constraint}] = target;
-}
-
 void WorldTargets::removeRotation(Instance instance, const std::string& constraint)
 {
     if (const auto known = _targets.find({instance, constraint}); known != _targets.end())

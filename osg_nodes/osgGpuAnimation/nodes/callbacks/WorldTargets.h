@@ -37,7 +37,10 @@ public:
         osg::Matrixd worldToFile;
     };
 
-    void set(Instance instance, const std::string& constraint, const Target& target);
+    void set(Instance instance, const std::string& constraint, const Target& target)
+    {
+        _targets[{instance, constraint}] = target;
+    }
     void remove(Instance instance, const std::string& constraint) { _targets.erase({instance, constraint}); }
     /// The application sets the constraint's rotation from now on.
     void removeRotation(Instance instance, const std::string& constraint);

@@ -11,6 +11,7 @@
 #include <osg/LOD>
 #include <osg/Material>
 #include <osg/UserDataContainer>
+#include <osgUtil/TransformAttributeFunctor>
 
 #include <limits>
 #include <map>
@@ -107,23 +108,6 @@ osg::StateSet* RigidMeshVisitor::stateOf(bool hasColors)
     return state;
 }
 
-void transformPoints(osg::Vec3Array& points, const osg::Matrixd& matrix)
-{
-    for (osg::Vec3& point : points)
-        point = osg::Vec3(osg::Vec3d(point) * matrix);
-}
-
-/// As the inverse transpose does.
-void transformNormals(osg::Vec3Array& normals, const osg::Matrixd& inverse)
-{
-    for (osg::Vec3& normal : normals)
-    {
-        osg::Vec3d turned = osg::Matrixd::transform3x3(inverse, osg::Vec3d(normal));
-        turned.normalize();
-        normal = osg::Vec3(turned);
-    }
-}
-
 /// The fourth number is the side of the bitangent, which a mirrored mesh has on the other side.
 void transformTangents(osg::Vec4Array& tangents, const osg::Matrixd& matrix)
 {
@@ -149,11 +133,14 @@ osg::ref_ptr<osg::Array> transformedCopy(osg::Array* array, Transform transform)
 
 void transform(osg::Geometry& mesh, const osg::Matrixd& matrix)
 {
-    const osg::Matrixd inverse = osg::Matrixd::inverse(matrix);
-    mesh.setVertexArray(transformedCopy<osg::Vec3Array>(mesh.getVertexArray(), [&](osg::Vec3Array& points)
-                                                        { transformPoints(points, matrix); }));
-    mesh.setNormalArray(transformedCopy<osg::Vec3Array>(mesh.getNormalArray(), [&](osg::Vec3Array& normals)
-                                                        { transformNormals(normals, inverse); }));
+    osgUtil::TransformAttributeFunctor functor(matrix);
+    const auto transformed = [&](osg::Drawable::AttributeType type)
+    {
+        return [&functor, type](osg::Vec3Array& array)
+        { functor.apply(type, array.getNumElements(), array.asVector().data()); };
+    };
+    mesh.setVertexArray(transformedCopy<osg::Vec3Array>(mesh.getVertexArray(), transformed(osg::Drawable::VERTICES)));
+    mesh.setNormalArray(transformedCopy<osg::Vec3Array>(mesh.getNormalArray(), transformed(osg::Drawable::NORMALS)));
     osg::Array* const present = mesh.getVertexAttribArray(POSE_TANGENT_LOCATION);
     if (!present) return;
     mesh.setVertexAttribArray(POSE_TANGENT_LOCATION,

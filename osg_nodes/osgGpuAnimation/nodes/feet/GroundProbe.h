@@ -4,7 +4,6 @@
 #include <osg/Node>
 #include <osg/Vec3d>
 
-#include <memory>
 #include <optional>
 #include <vector>
 

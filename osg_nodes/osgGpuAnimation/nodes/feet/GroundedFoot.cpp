@@ -50,11 +50,6 @@ double remainder(double seconds, double& left)
 
 } // namespace
 
-osg::Vec3d GroundedFoot::onClipsGround(const osg::Vec3d& place) const
-{
-    return place - _pose.up * ((place - _pose.origin) * _pose.up);
-}
-
 void GroundedFoot::takePose(const LegPose& pose)
 {
     _pose = pose;
@@ -118,16 +113,6 @@ void GroundedFoot::standOn(const Ground& below, const Ground& landing, double se
     }
     _ground = ground;
     _isGrounded = support.has_value();
-}
-
-double GroundedFoot::wantedHeight(double height) const
-{
-    return height + _ground.heightAt(place()) - place().z();
-}
-
-double GroundedFoot::riseOver(const osg::Vec3d& way) const
-{
-    return _ground.heightAt(_ground.place + way) - _ground.place.z();
 }
 
 void GroundedFoot::solve(double maxTilt)

@@ -56,9 +56,9 @@ public:
     void standOn(const Ground& ground, const Ground& landing, double seconds, bool isNew);
     bool isGrounded() const { return _isGrounded; } ///< false: there is no ground
     /// The height of the character at which the foot is as far below the hips as in the clips. height: the present one.
-    double wantedHeight(double height) const;
+    double wantedHeight(double height) const { return height + _ground.heightAt(place()) - place().z(); }
     /// The change of the ground's height along its slope.
-    double riseOver(const osg::Vec3d& way) const;
+    double riseOver(const osg::Vec3d& way) const { return _ground.heightAt(_ground.place + way) - _ground.place.z(); }
 
     /// Computes the target. maxTilt: radians.
     void solve(double maxTilt);
@@ -73,7 +73,10 @@ public:
     void carry(const osg::Matrixd& motion, double turn);
 
 private:
-    osg::Vec3d onClipsGround(const osg::Vec3d& place) const;
+    osg::Vec3d onClipsGround(const osg::Vec3d& place) const
+    {
+        return place - _pose.up * ((place - _pose.origin) * _pose.up);
+    }
     osg::Vec3d place() const { return _below + _shift; }
 
     double _blendSeconds;

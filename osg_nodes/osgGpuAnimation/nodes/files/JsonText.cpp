@@ -14,32 +14,6 @@ namespace
 constexpr std::size_t maxText = 1 << 16;
 constexpr int deepest = 256;
 
-/// Rejects deep nesting and duplicate members, which the parser alone accepts.
-class ParserWatch
-{
-public:
-    bool operator()(int depth, Json::parse_event_t event, const Json& parsed)
-    {
-        using Event = Json::parse_event_t;
-        if (event == Event::object_start || event == Event::array_start)
-        {
-            if (depth >= deepest) throw JsonFault{"nested more than " + std::to_string(deepest) + " deep"};
-            _members.resize(static_cast<std::size_t>(depth) + 1);
-            _members.back().clear();
-        }
-        if (event == Event::key)
-        {
-            const std::string& name = parsed.get_ref<const std::string&>();
-            if (!_members[static_cast<std::size_t>(depth) - 1].insert(name).second)
-                throw JsonFault{"member \"" + name + "\" comes twice"};
-        }
-        return true;
-    }
-
-private:
-    std::vector<std::set<std::string>> _members; ///< of each enclosing object
-};
-
 } // namespace
 
 Result<std::string> readJsonFile(const std::string& file)
@@ -53,10 +27,28 @@ Result<void> readJson(const std::string& text, const std::function<void(const Js
 {
     if (text.size() > maxText)
         return Error{std::to_string(text.size()) + " bytes, at most " + std::to_string(maxText) + " are read"};
+    std::vector<std::set<std::string>> members; // of each enclosing object
+    // Rejects deep nesting and duplicate members, which the parser alone accepts.
+    const auto watch = [&](int depth, Json::parse_event_t event, const Json& parsed)
+    {
+        using Event = Json::parse_event_t;
+        if (event == Event::object_start || event == Event::array_start)
+        {
+            if (depth >= deepest) throw JsonFault{"nested more than " + std::to_string(deepest) + " deep"};
+            members.resize(static_cast<std::size_t>(depth) + 1);
+            members.back().clear();
+        }
+        if (event == Event::key)
+        {
+            const std::string& name = parsed.get_ref<const std::string&>();
+            if (!members[static_cast<std::size_t>(depth) - 1].insert(name).second)
+                throw JsonFault{"member \"" + name + "\" comes twice"};
+        }
+        return true;
+    };
     try
     {
-        ParserWatch watch;
-        read(Json::parse(text, std::ref(watch)));
+        read(Json::parse(text, watch));
         return {};
     }
     catch (const JsonFault& fault)

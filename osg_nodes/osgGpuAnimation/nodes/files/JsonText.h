@@ -19,7 +19,7 @@ namespace osgGpuAnimation::json
 /// Keeps the order of the members.
 using Json = nlohmann::ordered_json;
 
-/// An error in a member; parseJson() catches it.
+/// An error in a member; readJson() catches it.
 struct JsonFault
 {
     std::string message;
@@ -31,16 +31,6 @@ Result<std::string> readJsonFile(const std::string& file);
 /// Calls read() with what the text describes. Errors: invalid JSON; a text of more than 64 KiB or with more than 256
 /// nested levels; a duplicate member; the faults that read() throws.
 Result<void> readJson(const std::string& text, const std::function<void(const Json&)>& read);
-
-/// The same for a function that returns the value.
-template <typename Value>
-Result<Value> parseJson(const std::string& text, Value (*toValue)(const Json&))
-{
-    Value value;
-    const Result<void> read = readJson(text, [&](const Json& json) { value = toValue(json); });
-    if (!read) return read.error();
-    return value;
-}
 
 // where: the place of the value in the text. All throw a JsonFault.
 

@@ -124,12 +124,12 @@ public:
     }
     void apply(osg::LightSource& source) override
     {
-        if (markOf(source) || !visibilityOf(source).empty()) _visit(source);
+        if (markOf(source, lightMark) || !visibilityOf(source).empty()) _visit(source);
         traverse(source);
     }
     void apply(osg::CameraView& view) override
     {
-        if (markOf(view)) _visit(view);
+        if (markOf(view, cameraMark)) _visit(view);
         traverse(view);
     }
 
@@ -173,13 +173,13 @@ UnanimatedMeshes::~UnanimatedMeshes() = default;
 
 osg::StateSet* UnanimatedMeshes::stateAtRest(osg::StateSet* state)
 {
-    const std::optional<int> material = state ? markOf(*state) : std::nullopt;
+    const std::optional<int> material = state ? markOf(*state, materialMark) : std::nullopt;
     if (!material) return state;
     osg::ref_ptr<osg::StateSet>& own = _states[state];
     if (own) return own;
     own = ownState(*state);
     own->setDataVariance(osg::Object::STATIC);
-    removeMark(*own);
+    removeMark(*own, materialMark);
     if (_properties) _properties->setMaterials(*own, *material);
     return own;
 }
@@ -206,7 +206,7 @@ void UnanimatedMeshes::release(osg::Geometry& copy)
         copy.setNodeMask(isShown ? applicationMask(copy) : 0);
     }
     copy.setStateSet(stateAtRest(copy.getStateSet()));
-    removeVisibility(copy); // gives the copy its own user data, which the variants belong to
+    removeMark(copy, visibilityMark); // gives the copy its own user data, which the variants belong to
     if (!names.empty()) setVariantStates(copy, defaultState, variants);
 }
 
@@ -290,26 +290,22 @@ void AnimatedProperties::bindChildren(osg::Group& character, OwnStates& owned)
             continue;
         }
         osg::StateSet* state = mesh->getStateSet();
-        if (state && markOf(*state))
+        if (const auto material = state ? markOf(*state, materialMark) : std::nullopt)
         {
             osg::ref_ptr<osg::StateSet>& own = owned[state];
             if (!own)
             {
                 own = ownState(*state);
-                _materials.push_back({*markOf(*state), own});
+                _materials.push_back({*material, own});
             }
             mesh->setStateSet(own);
         }
-        bindMesh(*mesh);
+        if (std::vector<int> nodes = visibilityOf(*mesh); !nodes.empty())
+        {
+            if (_hasApplicationMasks && mesh->getNodeMask() == 0) storeMask(*mesh, 0);
+            _hidables.push_back({mesh, std::move(nodes)});
+        }
     }
-}
-
-void AnimatedProperties::bindMesh(osg::Drawable& mesh)
-{
-    std::vector<int> nodes = visibilityOf(mesh);
-    if (nodes.empty()) return;
-    if (_hasApplicationMasks && mesh.getNodeMask() == 0) storeMask(mesh, 0);
-    _hidables.push_back({&mesh, std::move(nodes)});
 }
 
 void AnimatedProperties::bindBelow(osg::Node& node)
@@ -318,12 +314,12 @@ void AnimatedProperties::bindBelow(osg::Node& node)
                   [&](osg::Node& marked)
                   {
                       if (auto* view = dynamic_cast<osg::CameraView*>(&marked))
-                          return _cameras.push_back({*markOf(*view), view});
+                          return _cameras.push_back({*markOf(*view, cameraMark), view});
                       auto& source = static_cast<osg::LightSource&>(marked);
                       osg::Light* light = source.getLight();
                       if (!light) return;
                       osg::Light* shown = shownLight(*light);
-                      _lights.push_back({markOf(source).value_or(-1), &source, shown ? shown : light,
+                      _lights.push_back({markOf(source, lightMark).value_or(-1), &source, shown ? shown : light,
                                          visibilityOf(source), shown == nullptr});
                   });
 }
@@ -456,12 +452,11 @@ void AnimatedProperties::apply(const AnimationSet& set, const PoseInstruction& i
             continue;
         if (member.object == Object::Node) isVisibilityChanged = true;
         if (member.object == Object::Light) lights.push_back(property.pointer.index);
-        for (const Material& material : _materials)
-            if (member.object == Object::Material && material.index == property.pointer.index)
-                setMaterial(*material.state, property.pointer);
-        for (const Camera& camera : _cameras)
-            if (member.object == Object::Camera && camera.index == property.pointer.index)
-                setCamera(*camera.view, property.pointer);
+        for (const auto& [index, state] : _materials)
+            if (member.object == Object::Material && index == property.pointer.index)
+                setMaterial(*state, property.pointer);
+        for (const auto& [index, view] : _cameras)
+            if (member.object == Object::Camera && index == property.pointer.index) setCamera(*view, property.pointer);
     }
     for (Light& light : _lights)
         setLight(light, std::find(lights.begin(), lights.end(), light.index) != lights.end());

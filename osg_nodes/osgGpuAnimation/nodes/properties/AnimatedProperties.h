@@ -8,14 +8,12 @@
 #include <osg/Geometry>
 #include <osg/Group>
 #include <osg/LightSource>
-#include <osg/observer_ptr>
 #include <osg/StateSet>
 
 #include <array>
 #include <cstddef>
 #include <map>
 #include <memory>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -67,11 +65,6 @@ private:
         PropertyPointer pointer;
         std::size_t first; ///< of its numbers in _numbers
     };
-    struct Material
-    {
-        int index;
-        osg::ref_ptr<osg::StateSet> state;
-    };
     struct Light
     {
         int index; ///< -1: only its visibility is animated
@@ -79,11 +72,6 @@ private:
         osg::ref_ptr<osg::Light> shown; ///< the light while it is visible
         std::vector<int> nodes;         ///< see markVisibility()
         bool isVisible = true;
-    };
-    struct Camera
-    {
-        int index;
-        osg::ref_ptr<osg::CameraView> view;
     };
     struct Hidable
     {
@@ -94,7 +82,6 @@ private:
     AnimatedProperties() = default;
     using OwnStates = std::map<const osg::StateSet*, osg::ref_ptr<osg::StateSet>>; ///< by the marked one
     void bindChildren(osg::Group& group, OwnStates& owned);
-    void bindMesh(osg::Drawable& mesh);
     void bindBelow(osg::Node& node);
     /// The numbers that are shown, first those at rest, or the default; within the member's range.
     std::array<float, 4> valueOf(const PropertyMember& member, int index) const;
@@ -107,9 +94,9 @@ private:
 
     std::vector<Property> _properties;
     std::map<std::pair<const PropertyMember*, int>, std::size_t> _firstNumbers; ///< by member and index, in _numbers
-    std::vector<Material> _materials;
+    std::vector<std::pair<int, osg::ref_ptr<osg::StateSet>>> _materials;        ///< with their indices
     std::vector<Light> _lights;
-    std::vector<Camera> _cameras;
+    std::vector<std::pair<int, osg::ref_ptr<osg::CameraView>>> _cameras; ///< with their indices
     std::vector<Hidable> _hidables;
     std::vector<float> _numbers, _shown; ///< of all properties
     bool _isBound = false;

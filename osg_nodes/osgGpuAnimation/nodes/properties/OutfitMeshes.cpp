@@ -6,7 +6,8 @@
 #include <osgGpuAnimation/mesh/geometry/MaterialVariants.h>
 #include <osgGpuAnimation/mesh/geometry/MeshNames.h>
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
-#include <osgGpuAnimation/nodes/properties/PropMeshes.h>
+#include <osgGpuAnimation/nodes/detail/RigidMeshes.h>
+#include <osgGpuAnimation/scene/OsgMatrix.h>
 
 #include <layout.glsl>
 
@@ -23,27 +24,6 @@ namespace
 
 static_assert(OutfitLists::maxOutfits + 1 <= POSE_OUTFITS_PER_VECTOR * POSE_OUTFIT_VECTORS);
 static_assert(POSE_OUTFITS_PER_VECTOR == 4, "the components of a vector");
-
-template <typename Function>
-void forEachState(const SkinnedGeometry& mesh, const std::vector<std::string>& variants, Function function)
-{
-    if (const osg::StateSet* state = mesh.getStateSet()) function(*state);
-    for (const std::string& variant : variants)
-        if (const osg::StateSet* state = variantState(mesh, variant)) function(*state);
-}
-
-std::vector<std::string> variantsOf(const osg::Group& crowd)
-{
-    std::set<std::string> names;
-    const auto add = [&](const osg::Object& object)
-    {
-        for (const std::string& name : variantNamesOf(object))
-            names.insert(name);
-    };
-    add(crowd);
-    forEachMesh(crowd, add);
-    return {names.begin(), names.end()};
-}
 
 /// The base-colour texture with another picture; of a material without one a repeated texture.
 osg::ref_ptr<osg::Texture2D> picturedTexture(const osg::StateSet& state, osg::Image& picture)
@@ -98,9 +78,27 @@ void addTo(States& states, osg::StateSet* state, std::size_t number)
     known->second.set(number);
 }
 
-std::string quotedList(const std::set<std::string>& names)
+/// The geometries below a prop's node as rigid meshes on the palette entry of its joint, with the kit's program and the
+/// state of the nodes above them. Arrays that need no transform are shared.
+/// Errors: no node; no such joint; a joint that no palette entry follows; a matrix that is not affine, mirrors or has
+/// no inverse; no osg::Geometry with osg::Vec3Array vertices, as in animated models.
+Result<std::vector<osg::ref_ptr<SkinnedGeometry>>> propMeshes(const Outfit::Prop& prop, const AnimationSet& set)
 {
-    return quotedNames(std::vector<std::string>(names.begin(), names.end()));
+    const std::string subject = "the prop on joint \"" + prop.joint + "\": ";
+    if (!prop.node) return Error{subject + "it has no node"};
+    const Result<std::size_t> joint = set.skeleton().jointNamed(prop.joint);
+    if (!joint) return Error{subject + joint.error().message};
+    const auto follows = [&](const PaletteEntry& entry) { return entry.joint == static_cast<int>(joint.value()); };
+    const auto entry = std::find_if(set.palette().begin(), set.palette().end(), follows);
+    if (entry == set.palette().end()) return Error{subject + "it moves no mesh of the crowd"};
+    if (const Result<AffineMatrix> checked = toRootMatrix(prop.toJoint, "the transform to the joint", true); !checked)
+        return Error{subject + checked.error().message};
+    const osg::Matrixd toEntry = prop.toJoint * osg::Matrixd::inverse(toOsg(entry->inverseBind));
+    if (!toEntry.valid()) return Error{subject + "its inverse bind matrix has no inverse"};
+    RigidMeshes made = RigidMeshes::of(*prop.node, static_cast<unsigned short>(entry - set.palette().begin()), toEntry);
+    if (made.meshes.empty())
+        return Error{subject + "\"" + prop.node->getName() + "\" has no still geometry with vertices of three floats"};
+    return std::move(made.meshes);
 }
 
 } // namespace
@@ -129,26 +127,32 @@ Result<void> OutfitMeshes::check(const osg::Group& crowd, const AnimationSet& se
 {
     if (!outfit) return Error{"there is no outfit"};
     const std::string subject = "outfit \"" + outfit->getName() + "\": ";
-    const std::vector<std::string> variants = variantsOf(crowd);
+    const std::vector<std::string> variants = variantNamesIn(crowd);
     std::set<std::string> materials;
-    const auto addMaterial = [&](const osg::StateSet& state)
+    const auto addMaterial = [&](const osg::StateSet* state)
     {
-        if (!state.getName().empty()) materials.insert(state.getName());
+        if (state && !state->getName().empty()) materials.insert(state->getName());
     };
-    forEachMesh(crowd, [&](const SkinnedGeometry& mesh) { forEachState(mesh, variants, addMaterial); });
+    const auto addMaterials = [&](const SkinnedGeometry& mesh)
+    {
+        addMaterial(mesh.getStateSet());
+        for (const std::string& variant : variants)
+            addMaterial(variantState(mesh, variant));
+    };
+    forEachMesh(crowd, addMaterials);
     for (const Outfit::Prop& prop : outfit->getProps())
     {
         const Result<const PropMesh*> known = propMesh(prop, set);
         if (!known) return Error{subject + known.error().message};
         for (const osg::ref_ptr<SkinnedGeometry>& mesh : known.value()->meshes)
-            addMaterial(*mesh->getStateSet());
+            addMaterial(mesh->getStateSet());
     }
     for (const auto& [part, isVisible] : outfit->getVisibility())
         if (const auto meshes = meshesNamed(crowd, part); !meshes) return Error{subject + meshes.error().message};
     if (!outfit->getVariant().empty() &&
         std::find(variants.begin(), variants.end(), outfit->getVariant()) == variants.end())
         return Error{subject + "there is no material variant \"" + outfit->getVariant() + "\"; the variants are " +
-                     quotedList({variants.begin(), variants.end()})};
+                     quotedNames(variants)};
     for (const auto& [joint, scale] : outfit->getJointScales())
     {
         if (const auto known = set.skeleton().jointNamed(joint); !known) return Error{subject + known.error().message};
@@ -156,8 +160,10 @@ Result<void> OutfitMeshes::check(const osg::Group& crowd, const AnimationSet& se
             if (!(scale[axis] >= 0.1f && scale[axis] <= 10.0f))
                 return Error{subject + "the scale of joint \"" + joint + "\" is not in [0.1, 10]"};
     }
-    const auto unknown = [&](const std::string& material) {
-        return Error{subject + "there is no material \"" + material + "\"; the materials are " + quotedList(materials)};
+    const auto unknown = [&](const std::string& material)
+    {
+        return Error{subject + "there is no material \"" + material + "\"; the materials are " +
+                     quotedNames({materials.begin(), materials.end()})};
     };
     for (const auto& [material, color] : outfit->getColors())
     {

@@ -3,52 +3,12 @@
 
 #include <osgGpuAnimation/nodes/properties/PropertyPointer.h>
 
-#include <osg/ValueObject>
-
 #include <algorithm>
 #include <string>
 #include <string_view>
 
 namespace osgGpuAnimation
 {
-
-namespace
-{
-
-const char* const materialMark = "osgGpuAnimation.material";
-const char* const lightMark = "osgGpuAnimation.light";
-const char* const cameraMark = "osgGpuAnimation.camera";
-const char* const visibilityMark = "osgGpuAnimation.visibility";
-
-std::optional<int> indexOf(const osg::Object& object, const char* mark)
-{
-    int index = 0;
-    return object.getUserValue(mark, index) ? std::optional<int>(index) : std::nullopt;
-}
-
-void removeMark(osg::Object& object, const char* mark)
-{
-    osg::UserDataContainer& data = ownUserData(object);
-    const unsigned int index = data.getUserObjectIndex(mark);
-    if (index < data.getNumUserObjects()) data.removeUserObject(index);
-}
-
-} // namespace
-
-void markMaterial(osg::StateSet& stateSet, int material)
-{
-    stateSet.setUserValue(materialMark, material);
-}
-
-void markLight(osg::LightSource& source, int light)
-{
-    source.setUserValue(lightMark, light);
-}
-
-void markCamera(osg::CameraView& view, int camera)
-{
-    view.setUserValue(cameraMark, camera);
-}
 
 void markVisibility(osg::Node& node, const std::vector<int>& nodes)
 {
@@ -58,19 +18,10 @@ void markVisibility(osg::Node& node, const std::vector<int>& nodes)
     node.setUserValue(visibilityMark, text);
 }
 
-std::optional<int> markOf(const osg::StateSet& stateSet)
+std::optional<int> markOf(const osg::Object& object, const char* mark)
 {
-    return indexOf(stateSet, materialMark);
-}
-
-std::optional<int> markOf(const osg::LightSource& source)
-{
-    return indexOf(source, lightMark);
-}
-
-std::optional<int> markOf(const osg::CameraView& view)
-{
-    return indexOf(view, cameraMark);
+    int index = 0;
+    return object.getUserValue(mark, index) ? std::optional<int>(index) : std::nullopt;
 }
 
 // A saved scene may hold any text.
@@ -91,7 +42,7 @@ std::vector<int> visibilityOf(const osg::Object& object)
 
 bool isMeshMarked(const osg::Drawable& mesh)
 {
-    return !visibilityOf(mesh).empty() || (mesh.getStateSet() && markOf(*mesh.getStateSet()));
+    return !visibilityOf(mesh).empty() || (mesh.getStateSet() && markOf(*mesh.getStateSet(), materialMark));
 }
 
 osg::UserDataContainer& ownUserData(osg::Object& object)
@@ -102,14 +53,11 @@ osg::UserDataContainer& ownUserData(osg::Object& object)
     return *own;
 }
 
-void removeMark(osg::StateSet& stateSet)
+void removeMark(osg::Object& object, const char* mark)
 {
-    removeMark(stateSet, materialMark);
-}
-
-void removeVisibility(osg::Object& object)
-{
-    removeMark(object, visibilityMark);
+    osg::UserDataContainer& data = ownUserData(object);
+    const unsigned int index = data.getUserObjectIndex(mark);
+    if (index < data.getNumUserObjects()) data.removeUserObject(index);
 }
 
 } // namespace osgGpuAnimation

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <limits>
 #include <tuple>
-#include <utility>
 
 namespace osgGpuAnimation
 {
@@ -40,99 +39,77 @@ constexpr TextureSlot textureSlots[] = {
     {"extensions/KHR_materials_transmission/transmissionTexture", "MATERIAL_TRANSMISSION_MAP"},
 };
 
-PropertyMember factor(const char* name, const char* uniform, std::size_t component, std::size_t count = 1,
-                      std::array<float, 4> rest = {})
-{
-    PropertyMember member;
-    member.name = name;
-    member.count = count;
-    member.rest = rest;
-    member.uniform = uniform;
-    member.component = component;
-    return member;
-}
+const std::string emissiveStrength = "extensions/KHR_materials_emissive_strength/emissiveStrength";
+const std::string specular = "extensions/KHR_materials_specular/specular";
+const std::string clearcoat = "extensions/KHR_materials_clearcoat/clearcoat";
+const std::string sheen = "extensions/KHR_materials_sheen/sheen";
 
-PropertyMember upTo(PropertyMember member, float max)
+void addTransforms(std::vector<PropertyMember>& all)
 {
-    member.max = max;
-    return member;
-}
-
-PropertyMember from(PropertyMember member, float min)
-{
-    member.min = min;
-    return member;
-}
-
-PropertyMember in(const char* group, PropertyMember member)
-{
-    member.group = group;
-    return member;
-}
-
-PropertyMember of(Object object, PropertyMember member)
-{
-    member.object = object;
-    return member;
-}
-
-void addMaterials(std::vector<PropertyMember>& all)
-{
-    all.push_back(factor("pbrMetallicRoughness/baseColorFactor", "baseColorFactor", 0, 4, {1, 1, 1, 1}));
-    all.push_back(factor("pbrMetallicRoughness/metallicFactor", "materialFactors", 0, 1, {1}));
-    all.push_back(factor("pbrMetallicRoughness/roughnessFactor", "materialFactors", 1, 1, {1}));
-    all.push_back(from(upTo(factor("normalTexture/scale", "materialFactors", 2, 1, {1}), maxFloat), -maxFloat));
-    all.push_back(factor("occlusionTexture/strength", "materialFactors", 3, 1, {1}));
-    all.push_back(upTo(factor("alphaCutoff", "alphaCutoff", 0, 1, {0.5f}), maxFloat));
-    all.push_back(in("emission", factor("emissiveFactor", "emissiveFactor", 0, 3)));
-    all.push_back(in("emission", upTo(factor("extensions/KHR_materials_emissive_strength/emissiveStrength",
-                                             "emissiveStrength", 0, 1, {1}),
-                                      maxFloat)));
-    all.push_back(in("reflection", upTo(factor("extensions/KHR_materials_ior/ior", "", 0, 1, {1.5f}), maxFloat)));
-    all.push_back(
-        in("reflection",
-           upTo(factor("extensions/KHR_materials_specular/specularColorFactor", "", 0, 3, {1, 1, 1}), maxFloat)));
-    all.push_back(factor("extensions/KHR_materials_specular/specularFactor", "materialSpecular", 3, 1, {1}));
-    all.push_back(factor("extensions/KHR_materials_clearcoat/clearcoatFactor", "materialClearcoat", 0));
-    all.push_back(factor("extensions/KHR_materials_clearcoat/clearcoatRoughnessFactor", "materialClearcoat", 1));
-    all.push_back(from(
-        upTo(factor("extensions/KHR_materials_clearcoat/clearcoatNormalTexture/scale", "materialClearcoat", 2, 1, {1}),
-             maxFloat),
-        -maxFloat));
-    all.push_back(factor("extensions/KHR_materials_sheen/sheenColorFactor", "materialSheen", 0, 3));
-    all.push_back(factor("extensions/KHR_materials_sheen/sheenRoughnessFactor", "materialSheen", 3));
-    all.push_back(factor("extensions/KHR_materials_transmission/transmissionFactor", "materialTransmission", 0));
     for (const TextureSlot& slot : textureSlots)
         for (const auto& [part, count, rest] :
-             {std::tuple("offset", 2, 0.0f), std::tuple("rotation", 1, 0.0f), std::tuple("scale", 2, 1.0f)})
-        {
-            PropertyMember member;
-            member.name = std::string(slot.name) + "/extensions/KHR_texture_transform/" + part;
-            member.count = static_cast<std::size_t>(count);
-            member.rest = {rest, rest};
-            member.min = -maxFloat;
-            member.max = maxFloat;
-            member.group = member.texture = slot.name;
-            member.define = slot.define;
-            all.push_back(member);
-        }
+             {std::tuple("offset", 2u, 0.0f), std::tuple("rotation", 1u, 0.0f), std::tuple("scale", 2u, 1.0f)})
+            all.push_back({Object::Material,
+                           std::string(slot.name) + "/extensions/KHR_texture_transform/" + part,
+                           count,
+                           {rest, rest},
+                           -maxFloat,
+                           maxFloat,
+                           false,
+                           slot.name,
+                           "",
+                           0,
+                           slot.name,
+                           slot.define});
 }
 
 std::vector<PropertyMember> makeMembers()
 {
-    std::vector<PropertyMember> all;
-    addMaterials(all);
-    const auto light = [](PropertyMember member) { return of(Object::Light, in("light", std::move(member))); };
-    all.push_back(light(upTo(factor("color", "", 0, 3, {1, 1, 1}), maxFloat)));
-    all.push_back(light(upTo(factor("intensity", "", 0, 1, {1}), maxFloat)));
-    all.push_back(light(upTo(factor("range", "", 0), maxFloat)));
-    all.push_back(light(upTo(factor("spot/innerConeAngle", "", 0), halfPi)));
-    all.push_back(light(upTo(factor("spot/outerConeAngle", "", 0, 1, {halfPi / 2.0f}), halfPi)));
-    all.push_back(of(Object::Camera, from(upTo(factor("perspective/yfov", "", 0), 3.14f), 1e-3f)));
-    all.push_back(of(Object::Camera, from(upTo(factor("orthographic/ymag", "", 0), maxFloat), -maxFloat)));
-    PropertyMember visible = of(Object::Node, factor("extensions/KHR_node_visibility/visible", "", 0, 1, {1}));
-    visible.isBoolean = true;
-    all.push_back(visible);
+    std::vector<PropertyMember> all = {
+        {Object::Material, "pbrMetallicRoughness/baseColorFactor", 4, {1, 1, 1, 1}, 0, 1, false, "", "baseColorFactor"},
+        {Object::Material, "pbrMetallicRoughness/metallicFactor", 1, {1}, 0, 1, false, "", "materialFactors", 0},
+        {Object::Material, "pbrMetallicRoughness/roughnessFactor", 1, {1}, 0, 1, false, "", "materialFactors", 1},
+        {Object::Material, "normalTexture/scale", 1, {1}, -maxFloat, maxFloat, false, "", "materialFactors", 2},
+        {Object::Material, "occlusionTexture/strength", 1, {1}, 0, 1, false, "", "materialFactors", 3},
+        {Object::Material, "alphaCutoff", 1, {0.5f}, 0, maxFloat, false, "", "alphaCutoff"},
+        {Object::Material, "emissiveFactor", 3, {}, 0, 1, false, "emission", "emissiveFactor"},
+        {Object::Material, emissiveStrength, 1, {1}, 0, maxFloat, false, "emission", "emissiveStrength"},
+        {Object::Material, "extensions/KHR_materials_ior/ior", 1, {1.5f}, 0, maxFloat, false, "reflection"},
+        {Object::Material, specular + "ColorFactor", 3, {1, 1, 1}, 0, maxFloat, false, "reflection"},
+        {Object::Material, specular + "Factor", 1, {1}, 0, 1, false, "", "materialSpecular", 3},
+        {Object::Material, clearcoat + "Factor", 1, {}, 0, 1, false, "", "materialClearcoat", 0},
+        {Object::Material, clearcoat + "RoughnessFactor", 1, {}, 0, 1, false, "", "materialClearcoat", 1},
+        {Object::Material,
+         clearcoat + "NormalTexture/scale",
+         1,
+         {1},
+         -maxFloat,
+         maxFloat,
+         false,
+         "",
+         "materialClearcoat",
+         2},
+        {Object::Material, sheen + "ColorFactor", 3, {}, 0, 1, false, "", "materialSheen", 0},
+        {Object::Material, sheen + "RoughnessFactor", 1, {}, 0, 1, false, "", "materialSheen", 3},
+        {Object::Material,
+         "extensions/KHR_materials_transmission/transmissionFactor",
+         1,
+         {},
+         0,
+         1,
+         false,
+         "",
+         "materialTransmission"},
+        {Object::Light, "color", 3, {1, 1, 1}, 0, maxFloat, false, "light"},
+        {Object::Light, "intensity", 1, {1}, 0, maxFloat, false, "light"},
+        {Object::Light, "range", 1, {}, 0, maxFloat, false, "light"},
+        {Object::Light, "spot/innerConeAngle", 1, {}, 0, halfPi, false, "light"},
+        {Object::Light, "spot/outerConeAngle", 1, {halfPi / 2.0f}, 0, halfPi, false, "light"},
+        {Object::Camera, "perspective/yfov", 1, {}, 1e-3f, 3.14f},
+        {Object::Camera, "orthographic/ymag", 1, {}, -maxFloat, maxFloat},
+        {Object::Node, "extensions/KHR_node_visibility/visible", 1, {1}, 0, 1, true},
+    };
+    addTransforms(all);
     return all;
 }
 

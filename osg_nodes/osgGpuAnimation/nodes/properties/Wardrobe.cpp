@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/properties/Wardrobe.h>
 
-#include <osgGpuAnimation/animation/bounds/ClipBounds.h>
 #include <osgGpuAnimation/authoring/retarget/JointNames.h>
-#include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/nodes/properties/AnimatedProperties.h>
 
 #include <osg/UserDataContainer>
@@ -90,7 +88,7 @@ public:
             return Error{"the character has no joints " + quotedNames(_lost) +
                          ", nor any joint that is above them in the garment; its joints are " +
                          quotedNames(namesIn(body->skeleton().joints()))};
-        FittedGarment fitted{body, {}, _further.joints.size(), _followed, {}};
+        FittedGarment fitted{{_further.joints.size(), _followed, {}}, body, {}};
         if (_further.joints.empty()) return fitted;
         constexpr std::size_t maxEntries = 65536; // entries are 16-bit numbers
         if (body->paletteSize() + _further.joints.size() > maxEntries)
@@ -213,16 +211,6 @@ void setIdentifier(SkinnedGeometry& mesh, const std::string& identifier)
 
 } // namespace
 
-ClipBoxes::ClipBoxes(const std::vector<const SkinnedGeometry*>& meshes, const AnimationSet& set)
-{
-    MixBounds::Boxes boxes = mixBoxesOf(meshes, set);
-    std::vector<osg::BoundingBox> bounds;
-    for (const Box& box : boundsOfClips(set, boxes.ofClips))
-        bounds.push_back(toOsg(box));
-    ofClips = std::make_shared<const std::vector<osg::BoundingBox>>(std::move(bounds));
-    ofMixes = std::make_shared<const MixBounds>(set, std::move(boxes));
-}
-
 bool Wardrobe::areSame(const ObservedMeshes& known, const Meshes& meshes)
 {
     return std::equal(known.begin(), known.end(), meshes.begin(), meshes.end(),
@@ -275,16 +263,12 @@ Result<FittedGarment> Wardrobe::fit(const osg::Node& garment, const AnimationSet
         setMorphs(*mesh, *source, set, fitted);
         fitted.meshes.push_back(mesh);
     }
-    Fitting fitting;
-    fitting.identifier = identifier;
-    fitting.sources.assign(meshes.begin(), meshes.end());
-    fitting.body = body;
-    fitting.set = fitted.set;
-    fitting.meshes.assign(fitted.meshes.begin(), fitted.meshes.end());
-    fitting.fitted = fitted;
-    fitting.fitted.set = nullptr;
-    fitting.fitted.meshes.clear();
-    _fittings.push_back(std::move(fitting));
+    _fittings.push_back({identifier,
+                         {meshes.begin(), meshes.end()},
+                         body,
+                         fitted.set,
+                         {fitted.meshes.begin(), fitted.meshes.end()},
+                         {fitted, nullptr, {}}});
     return fitted;
 }
 
@@ -335,8 +319,7 @@ std::shared_ptr<const AnimationSet> Wardrobe::withoutUnused(const std::shared_pt
     return fewer ? fewer.value() : set;
 }
 
-ClipBoxes Wardrobe::boxes(const std::vector<const SkinnedGeometry*>& meshes,
-                          const std::shared_ptr<const AnimationSet>& set)
+std::shared_ptr<const ClipBoxes> Wardrobe::boxes(const Meshes& meshes, const std::shared_ptr<const AnimationSet>& set)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
     for (auto known = _outfits.begin(); known != _outfits.end();)
@@ -345,9 +328,9 @@ ClipBoxes Wardrobe::boxes(const std::vector<const SkinnedGeometry*>& meshes,
         if (exists && known->set.lock() == set && areSame(known->meshes, meshes)) return known->boxes;
         known = exists ? std::next(known) : _outfits.erase(known);
     }
-    Outfit outfit{{meshes.begin(), meshes.end()}, set, ClipBoxes(meshes, *set)};
-    _outfits.push_back(outfit);
-    return outfit.boxes;
+    const auto boxes = std::make_shared<const ClipBoxes>(*set, mixBoxesOf(meshes, *set));
+    _outfits.push_back({{meshes.begin(), meshes.end()}, set, boxes});
+    return boxes;
 }
 
 } // namespace osgGpuAnimation

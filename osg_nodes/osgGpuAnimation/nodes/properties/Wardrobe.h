@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/bounds/MixBounds.h>
+#include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
+#include <osgGpuAnimation/nodes/WornGarment.h>
 
-#include <osg/BoundingBox>
 #include <osg/Group>
 #include <osg/Node>
 #include <osg/observer_ptr>
@@ -18,24 +18,10 @@ namespace osgGpuAnimation
 {
 
 /// The meshes of a garment, bound to the palette of a body.
-struct FittedGarment
+struct FittedGarment : WornGarment
 {
     std::shared_ptr<const AnimationSet> set;           ///< the body's, with the further entries of the garment
     std::vector<osg::ref_ptr<SkinnedGeometry>> meshes; ///< share the garment's arrays, apart from palette entries
-    std::size_t addedEntries = 0;                      ///< of the palette
-    std::vector<std::string> followed;                 ///< joints of the garment that the body lacks
-    std::vector<std::string> leftOut;                  ///< morphs of the garment that the body lacks
-};
-
-/// The bounds of the clips of a set for some meshes, in the file's axes.
-struct ClipBoxes
-{
-    ClipBoxes() = default;
-    /// meshes: of the set.
-    ClipBoxes(const std::vector<const SkinnedGeometry*>& meshes, const AnimationSet& set);
-
-    std::shared_ptr<const std::vector<osg::BoundingBox>> ofClips; ///< rest pose, then one per clip
-    std::shared_ptr<const MixBounds> ofMixes;
 };
 
 /// The garments that a character and its clones wear. Characters that wear the same garment share its meshes, and the
@@ -62,7 +48,7 @@ public:
     static std::shared_ptr<const AnimationSet> withoutUnused(const std::shared_ptr<const AnimationSet>& set,
                                                              const osg::Group& meshes);
     /// The bounds, which are computed once for equal sets and meshes.
-    ClipBoxes boxes(const Meshes& meshes, const std::shared_ptr<const AnimationSet>& set);
+    std::shared_ptr<const ClipBoxes> boxes(const Meshes& meshes, const std::shared_ptr<const AnimationSet>& set);
 
 private:
     using ObservedMeshes = std::vector<osg::observer_ptr<const SkinnedGeometry>>;
@@ -87,7 +73,7 @@ private:
     {
         ObservedMeshes meshes;
         std::weak_ptr<const AnimationSet> set;
-        ClipBoxes boxes;
+        std::shared_ptr<const ClipBoxes> boxes;
     };
 
     static bool areSame(const ObservedMeshes& known, const Meshes& meshes);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osg/BoundingBox>
 #include <osg/Geometry>
 #include <osgUtil/CullVisitor>
 

@@ -115,13 +115,6 @@ private:
     int _poseCount;
 };
 
-std::vector<osg::Vec3d> pointsOf(osg::Group& group, int poseCount)
-{
-    PointCollector collector(poseCount);
-    group.osg::Group::traverse(collector);
-    return std::move(collector.points);
-}
-
 /// OSG's visitor of bounds, with the guard of SceneVisitor.
 class Bounds : public osg::ComputeBoundsVisitor
 {
@@ -149,14 +142,11 @@ osg::BoundingBoxd extentOf(osg::Group& group)
     return osg::BoundingBoxd(visitor.getBoundingBox());
 }
 
-std::vector<osg::Vec3d> pointsOf(osg::Group& group)
+std::vector<osg::Vec3d> pointsOf(osg::Group& group, int poseCount)
 {
-    return pointsOf(group, 1);
-}
-
-std::vector<osg::Vec3d> sweptPointsOf(osg::Group& group)
-{
-    return pointsOf(group, 12);
+    PointCollector collector(poseCount);
+    group.osg::Group::traverse(collector);
+    return std::move(collector.points);
 }
 
 } // namespace osgGpuAnimation

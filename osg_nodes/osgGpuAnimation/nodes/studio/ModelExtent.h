@@ -17,9 +17,8 @@ osg::BoundingBoxd extentOf(osg::Group& group);
 /// Points around everything below the group, in the group's space: the vertices of characters in their present pose,
 /// which the CPU twin computes (boxes of clips are up to a tenth larger), the vertices of other meshes, and of a crowd
 /// those of its outermost instances. Empty if nothing is drawn below.
-std::vector<osg::Vec3d> pointsOf(osg::Group& group);
-
-/// The same points in twelve poses, which are spread over the clips that play now; of crowds in three.
-std::vector<osg::Vec3d> sweptPointsOf(osg::Group& group);
+/// poseCount: of each character, spread over the clip that plays now, from the present pose on; of crowds at most
+/// three.
+std::vector<osg::Vec3d> pointsOf(osg::Group& group, int poseCount = 1);
 
 } // namespace osgGpuAnimation

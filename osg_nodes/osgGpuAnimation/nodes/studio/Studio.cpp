@@ -22,15 +22,6 @@ constexpr unsigned int lights = 8;
 /// The light on meshes without PbrMaterial.
 constexpr float evenLight = 0.8f;
 
-/// The least z; top: without points.
-double lowest(const std::vector<osg::Vec3d>& points, double top)
-{
-    double z = top;
-    for (const osg::Vec3d& point : points)
-        z = std::min(z, point.z());
-    return z;
-}
-
 /// Of the studio's formula, see environment.glsl.
 KeyLight studioLight()
 {
@@ -67,15 +58,13 @@ void Studio::traverse(osg::NodeVisitor& visitor)
 {
     osgUtil::CullVisitor* const cull = visitor.asCullVisitor();
     const osg::Camera* const camera = cull ? cull->getCurrentCamera() : nullptr;
-    if (cull && !(camera && DepthPass::isOf(*camera))) cullSurroundings(*cull);
+    if (cull && !(camera && DepthPass::isOf(*camera)))
+    {
+        if (_ground) _shadow->accept(*cull);
+        _backdrop.cull(*cull, _ground, *_shadow);
+    }
     Environment::traverse(visitor);
     if (visitor.getVisitorType() == osg::NodeVisitor::UPDATE_VISITOR) fit();
-}
-
-void Studio::cullSurroundings(osgUtil::CullVisitor& visitor)
-{
-    if (_ground) _shadow->accept(visitor);
-    _backdrop.cull(visitor, _ground, *_shadow);
 }
 
 void Studio::fit()
@@ -88,7 +77,9 @@ void Studio::fit()
     if (!box.valid() || !(radius > 0.0) || !std::isfinite(radius)) return;
     if (!_ground)
     {
-        _ground = Ground{{0, 0, lowest(pointsOf(*this), box.zMax())}, radius, 1.0};
+        _ground = Ground{{0, 0, box.zMax()}, radius, 1.0};
+        for (const osg::Vec3d& point : pointsOf(*this))
+            _ground->middle.z() = std::min(_ground->middle.z(), point.z());
         _ground->height = std::max(box.zMax() - _ground->middle.z(), 0.01 * radius);
     }
     _ground->middle.x() = box.center().x();

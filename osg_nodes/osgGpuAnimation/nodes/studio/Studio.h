@@ -39,7 +39,6 @@ protected:
 private:
     void fit();
     bool fitLight();
-    void cullSurroundings(osgUtil::CullVisitor& visitor);
 
     osg::ref_ptr<KeyShadow> _shadow;
     Backdrop _backdrop;

@@ -17,11 +17,6 @@ constexpr double margin = 1.12; ///< size of the window relative to the points i
 
 } // namespace
 
-RaisedHome::RaisedHome(const RaisedHome& other, const osg::CopyOp& copyop)
-    : osg::Object(other, copyop), osg::Callback(other, copyop), osgGA::GUIEventHandler(other, copyop)
-{
-}
-
 bool RaisedHome::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdapter& action, osg::Object* object,
                         osg::NodeVisitor* visitor)
 {
@@ -34,7 +29,7 @@ bool RaisedHome::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAda
     double fieldOfView = 0.0, aspect = 1.0, zNear = 0.0, zFar = 0.0;
     if (!view->getCamera()->getProjectionMatrixAsPerspective(fieldOfView, aspect, zNear, zFar)) return false;
     osg::Group* const group = node->asGroup();
-    const std::vector<osg::Vec3d> points = group ? sweptPointsOf(*group) : std::vector<osg::Vec3d>();
+    const std::vector<osg::Vec3d> points = group ? pointsOf(*group, 12) : std::vector<osg::Vec3d>();
     if (points.empty()) return false;
 
     Standpoint place = standpointFrom(fillingDirection(points), points, fieldOfView, aspect, margin);

@@ -18,7 +18,10 @@ class RaisedHome : public osgGA::GUIEventHandler
 {
 public:
     RaisedHome() = default;
-    RaisedHome(const RaisedHome& other, const osg::CopyOp& copyop);
+    RaisedHome(const RaisedHome& other, const osg::CopyOp& copyop)
+        : osg::Object(other, copyop), osg::Callback(other, copyop), osgGA::GUIEventHandler(other, copyop)
+    {
+    }
     META_Object(osgGpuAnimation, RaisedHome)
 
     using osgGA::GUIEventHandler::handle;

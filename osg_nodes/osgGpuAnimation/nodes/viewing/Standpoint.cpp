@@ -16,6 +16,10 @@ namespace osgGpuAnimation
 namespace
 {
 
+/// From (0.55, -1, 0.3).
+const ViewDirection raisedDirection{osg::RadiansToDegrees(std::atan2(0.55, 1.0)),
+                                    osg::RadiansToDegrees(std::atan2(0.3, std::hypot(0.55, 1.0)))};
+
 /// The distance from the middle along `back` at which the picture holds all points. tangent: of half the height.
 double fittingDistance(const std::vector<osg::Vec3d>& points, const Standpoint& place, const osg::Vec3d (&axes)[3],
                        double tangent, double aspect)
@@ -28,42 +32,6 @@ double fittingDistance(const std::vector<osg::Vec3d>& points, const Standpoint& 
         distance = std::max(distance, spread / tangent + offset * axes[2]);
     }
     return distance;
-}
-
-/// back: from the model to the eye, of length 1.
-Standpoint fittingStandpoint(const osg::Vec3d& back, const osg::Vec3d& up, const std::vector<osg::Vec3d>& points,
-                             double fieldOfView, double aspect, double margin)
-{
-    const double tangent = std::tan(osg::DegreesToRadians(fieldOfView) / 2.0) / margin;
-    osg::Vec3d right = up ^ back;
-    right.normalize();
-    const osg::Vec3d axes[] = {right, back ^ right, back};
-    osg::BoundingBoxd box; // along those axes
-    for (const osg::Vec3d& point : points)
-        box.expandBy(point * axes[0], point * axes[1], point * axes[2]);
-    if (!box.valid()) box.set(-1, -1, -1, 1, 1, 1);
-
-    Standpoint place;
-    place.up = up;
-    place.middle = axes[0] * box.center().x() + axes[1] * box.center().y() + axes[2] * box.center().z();
-    place.radius = std::max(box.radius(), 1e-6);
-    double distance = fittingDistance(points, place, axes, tangent, aspect);
-    // Near points look larger, so the middle of the points is not the middle of the picture: a few steps centre it.
-    for (int step = 0; step < 4; ++step)
-    {
-        osg::BoundingBoxd seen;
-        for (const osg::Vec3d& point : points)
-        {
-            const osg::Vec3d offset = point - place.middle;
-            const double depth = distance - offset * back;
-            seen.expandBy(offset * axes[0] / depth, offset * axes[1] / depth, 0.0);
-        }
-        if (!seen.valid()) break;
-        place.middle += (axes[0] * seen.center().x() + axes[1] * seen.center().y()) * distance;
-        distance = fittingDistance(points, place, axes, tangent, aspect);
-    }
-    place.eye = place.middle + back * distance;
-    return place;
 }
 
 /// A direction to the eye, and the direction that is up in the picture.
@@ -109,23 +77,49 @@ double proportionOf(const std::vector<osg::Vec3d>& points, const ViewDirection& 
 Standpoint standpointFrom(const ViewDirection& direction, const std::vector<osg::Vec3d>& points, double fieldOfView,
                           double aspect, double margin)
 {
-    const EyeDirection eye = eyeDirection(direction);
-    return fittingStandpoint(eye.back, eye.up, points, fieldOfView, aspect, margin);
+    const auto& [back, up] = eyeDirection(direction);
+    const double tangent = std::tan(osg::DegreesToRadians(fieldOfView) / 2.0) / margin;
+    osg::Vec3d right = up ^ back;
+    right.normalize();
+    const osg::Vec3d axes[] = {right, back ^ right, back};
+    osg::BoundingBoxd box; // along those axes
+    for (const osg::Vec3d& point : points)
+        box.expandBy(point * axes[0], point * axes[1], point * axes[2]);
+    if (!box.valid()) box.set(-1, -1, -1, 1, 1, 1);
+
+    Standpoint place;
+    place.up = up;
+    place.middle = axes[0] * box.center().x() + axes[1] * box.center().y() + axes[2] * box.center().z();
+    place.radius = std::max(box.radius(), 1e-6);
+    double distance = fittingDistance(points, place, axes, tangent, aspect);
+    // Near points look larger, so the middle of the points is not the middle of the picture: a few steps centre it.
+    for (int step = 0; step < 4; ++step)
+    {
+        osg::BoundingBoxd seen;
+        for (const osg::Vec3d& point : points)
+        {
+            const osg::Vec3d offset = point - place.middle;
+            const double depth = distance - offset * back;
+            seen.expandBy(offset * axes[0] / depth, offset * axes[1] / depth, 0.0);
+        }
+        if (!seen.valid()) break;
+        place.middle += (axes[0] * seen.center().x() + axes[1] * seen.center().y()) * distance;
+        distance = fittingDistance(points, place, axes, tangent, aspect);
+    }
+    place.eye = place.middle + back * distance;
+    return place;
 }
 
 Standpoint raisedStandpoint(const std::vector<osg::Vec3d>& points, double fieldOfView, double aspect, double margin)
 {
-    osg::Vec3d back(0.55, -1.0, 0.3);
-    back.normalize();
-    return fittingStandpoint(back, osg::Vec3d(0, 0, 1), points, fieldOfView, aspect, margin);
+    return standpointFrom(raisedDirection, points, fieldOfView, aspect, margin);
 }
 
 ViewDirection fillingDirection(const std::vector<osg::Vec3d>& points)
 {
     constexpr double step = 4.0, maxElevation = 35.0; // degrees
     constexpr double enough = 0.6;                    // height by width: from there on, windows are well filled
-    ViewDirection direction{osg::RadiansToDegrees(std::atan2(0.55, 1.0)),
-                            osg::RadiansToDegrees(std::atan2(0.3, std::hypot(0.55, 1.0)))};
+    ViewDirection direction = raisedDirection;
     if (lieFlat(points))
         while (proportionOf(points, direction) < enough && direction.elevation + step <= maxElevation)
             direction.elevation += step;

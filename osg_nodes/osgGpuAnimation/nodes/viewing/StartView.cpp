@@ -60,12 +60,6 @@ osg::Matrixd viewToWorld(const osg::CameraView& view)
     return rotationOf(paths.front()) * osg::Matrixd::translate(paths.front().getTrans());
 }
 
-StartView::StartView(const StartView& other, const osg::CopyOp& copyop)
-    : osg::Object(other, copyop), osg::Callback(other, copyop), osgGA::GUIEventHandler(other, copyop),
-      _camera(other._camera)
-{
-}
-
 bool StartView::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdapter& action, osg::Object* object,
                        osg::NodeVisitor*)
 {
@@ -77,7 +71,12 @@ bool StartView::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdap
     {
     case Event::FRAME:
         if (!_hasStarted) start(event, *view, *node);
-        if (_isFollowing) followAfterUpdate(*node);
+        if (_isFollowing)
+            runAfterUpdateOf(*node,
+                             [self = osg::ref_ptr<StartView>(this)](osg::Node& watched)
+                             {
+                                 if (self->_isFollowing) self->follow(watched);
+                             });
         break;
     case Event::PUSH:
     case Event::SCROLL:
@@ -108,20 +107,11 @@ void StartView::start(const osgGA::GUIEventAdapter& event, osgViewer::View& view
     goHome(event, view, standpointOf(view, toWorld), osg::Matrixd::transform3x3(osg::Vec3d(0, 1, 0), toWorld));
 }
 
-void StartView::followAfterUpdate(osg::Node& node)
-{
-    runAfterUpdateOf(node,
-                     [self = osg::ref_ptr<StartView>(this)](osg::Node& watched)
-                     {
-                         if (self->_isFollowing) self->follow(watched);
-                     });
-}
-
 void StartView::follow(osg::Node& node)
 {
     const osg::CameraView* const camera = findBelow<osg::CameraView>(node, &_camera);
     // Not lock(): a viewer on the stack, as osgviewer's, has no references.
-    if (camera && _view.valid() && markOf(*camera)) setProjection(*_view->getCamera(), *camera);
+    if (camera && _view.valid() && markOf(*camera, cameraMark)) setProjection(*_view->getCamera(), *camera);
     if (camera && _view.valid() && _view->getCameraManipulator())
         _view->getCameraManipulator()->setByMatrix(viewToWorld(*camera));
 }

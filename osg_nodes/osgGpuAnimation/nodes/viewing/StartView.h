@@ -36,7 +36,11 @@ public:
     StartView() = default;
     explicit StartView(const std::string& camera) : _camera(camera) {} ///< camera: the name of an osg::CameraView
     /// Copies the name; the copy starts anew.
-    StartView(const StartView& other, const osg::CopyOp& copyop);
+    StartView(const StartView& other, const osg::CopyOp& copyop)
+        : osg::Object(other, copyop), osg::Callback(other, copyop), osgGA::GUIEventHandler(other, copyop),
+          _camera(other._camera)
+    {
+    }
     META_Object(osgGpuAnimation, StartView)
 
     const std::string& getCamera() const { return _camera; }
@@ -54,7 +58,6 @@ protected:
 private:
     void start(const osgGA::GUIEventAdapter& event, osgViewer::View& view, osg::Node& node);
     void follow(osg::Node& node);
-    void followAfterUpdate(osg::Node& node);
 
     std::string _camera;
     osg::observer_ptr<osgViewer::View> _view; ///< the one that has started

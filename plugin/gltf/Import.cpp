@@ -43,8 +43,11 @@ Result<int> choose(const std::string& wanted, const std::string& kind, const std
     if (named != names.end()) return static_cast<int>(named - names.begin());
     const auto numbered = std::find(numbers.begin(), numbers.end(), parsedNumber<int>(wanted).value_or(-1));
     if (numbered != numbers.end()) return static_cast<int>(numbered - numbers.begin());
+    std::vector<std::string> known;
+    for (const std::string& name : names)
+        known.push_back(printable(name));
     return Error{kind + ' ' + quoted(wanted) + " was asked for; the " + owner + "'s " + kind +
-                 "s are: " + quotedNames(names, [](const std::string& name) { return printable(name); })};
+                 "s are: " + quotedNames(known)};
 }
 
 /// The index of the variant to show first; -1: none.

@@ -362,12 +362,14 @@ BlendSpace::Mix BlendSpace::mixAt(const glm::dvec2& parameter) const
     {
         const Weight added{nearestCell->points[corner], nearest.weights[corner]};
         if (added.weight < negligibleWeight) continue;
-        mix.weights[mix.count++] = added;
+        const auto isLighter = [&](const Weight& other)
+        { return std::tie(added.weight, other.point) < std::tie(other.weight, added.point); };
+        std::size_t place = mix.count++;
+        for (; place > 0 && isLighter(mix.weights[place - 1]); --place)
+            mix.weights[place] = mix.weights[place - 1];
+        mix.weights[place] = added;
         whole += added.weight;
     }
-    std::sort(mix.weights.begin(), mix.weights.begin() + mix.count,
-              [](const Weight& a, const Weight& b)
-              { return std::tie(a.weight, b.point) < std::tie(b.weight, a.point); });
     for (Weight& weight : mix.weights)
         weight.weight /= whole;
     return mix;

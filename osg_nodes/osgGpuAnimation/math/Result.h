@@ -40,12 +40,6 @@ std::string quotedNames(const std::vector<T>& named)
     return names.empty() ? "none" : names;
 }
 
-/// The same for the names themselves.
-inline std::string quotedNames(const std::vector<std::string>& names)
-{
-    return quotedNames(names, [](const std::string& name) { return name; });
-}
-
 /// A message that names the element, what was expected and what was found.
 struct Error
 {

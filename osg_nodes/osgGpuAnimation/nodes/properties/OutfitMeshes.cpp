@@ -163,7 +163,7 @@ Result<void> OutfitMeshes::check(const osg::Group& crowd, const AnimationSet& se
     const auto unknown = [&](const std::string& material)
     {
         return Error{subject + "there is no material \"" + material + "\"; the materials are " +
-                     quotedNames({materials.begin(), materials.end()})};
+                     quotedNames(std::vector<std::string>(materials.begin(), materials.end()))};
     };
     for (const auto& [material, color] : outfit->getColors())
     {

@@ -16,6 +16,7 @@ view_packages=(
 # Further packages for the tests, and for .ci/run.
 test_packages=(
     libgtest-dev libbenchmark-dev glslang-tools python3 python3-skimage python3-scipy python3-pil xvfb xauth dpkg-dev file
+    pkgconf
 )
 ci_packages=(git clang clang-format doxygen mesa-vulkan-drivers mmdebstrap)
 # The test programs with suites named ...GLTest, for other drivers; tests/gpu/missing.sh checks that none is left out.

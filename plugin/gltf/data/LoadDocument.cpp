@@ -3,6 +3,7 @@
 
 #include "gltf/data/AnimationPointers.h"
 #include "gltf/data/Decompression.h"
+#include "gltf/data/Picture.h"
 #include "gltf/data/PictureCodecs.h"
 #include "gltf/data/ValidateLods.h"
 #include "gltf/data/Validation.h"

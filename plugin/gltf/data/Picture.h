@@ -1,28 +1,17 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "gltf/data/PictureHeader.h"
+
 #include <osgGpuAnimation/math/Result.h>
 
 #include <osg/Image>
 
-#include <cstddef>
-#include <cstdint>
 #include <string>
 #include <vector>
 
 namespace osgGpuAnimation::gltf
 {
-
-/// Format and size of a picture before it is decoded.
-struct PictureHeader
-{
-    static constexpr std::uint32_t maxPixelsPerSide = 16384;
-
-    std::string mimeType; ///< by the bytes: image/png, image/jpeg or image/webp
-    std::uint32_t width = 0;
-    std::uint32_t height = 0;
-    std::size_t decodedBytes = 0; ///< with four channels of the depth that the file has
-};
 
 // PNG, JPEG and WebP, decoded by libpng, libjpeg-turbo and libwebp: OSG's own readers leak memory over damaged pictures
 // and do not know WebP.

@@ -1,22 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "gltf/data/Picture.h"
+#include "gltf/data/PictureHeader.h"
 
 namespace osgGpuAnimation::gltf
 {
-
-inline Error damagedPicture()
-{
-    return Error{"the picture is damaged"};
-}
-
-/// The header, if a texture may have its size and the data is long enough for it.
-Result<PictureHeader> checkSize(const char* mimeType, std::uint32_t width, std::uint32_t height,
-                                std::uint64_t maxPixels, std::size_t bytesOfPixel);
-/// The same for a JPEG, whose scans must be few.
-Result<PictureHeader> checkJpegSize(std::uint32_t width, std::uint32_t height, const std::vector<unsigned char>& bytes);
-osg::ref_ptr<osg::Image> newImage(std::size_t width, std::size_t height, GLenum format, GLenum type);
 
 // One library for each format; where it is missing, without/ takes its place: OSG's plugin or an error.
 

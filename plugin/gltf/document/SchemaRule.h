@@ -12,7 +12,7 @@ namespace osgGpuAnimation::gltf::schema
 constexpr double maxInteger = 9007199254740991.0; // 2^53 - 1: exact in every JSON reader (section 2.7)
 constexpr double maxInt = 2147483647.0;
 constexpr double maxFloat = 3.4028234663852886e38;
-constexpr double aboveZero = 1e-30; // the least number where glTF asks for one above 0
+constexpr double aboveZero = 1e-300; // the least number where glTF asks for one above 0
 constexpr double belowPi = 3.14159265358979;
 constexpr double halfPi = 1.5707964; // pi / 2 as a float, rounded up
 constexpr std::size_t anyCount = std::size_t(-1);

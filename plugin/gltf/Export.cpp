@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/Export.h"
 
-#include "gltf/export/CharacterReach.h"
 #include "gltf/export/CharacterWriter.h"
 #include "gltf/export/ClipWriter.h"
 #include "gltf/export/GeometryWriter.h"
@@ -20,7 +19,6 @@
 #include <osgGpuAnimation/nodes/properties/AnimatedProperties.h>
 #include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
-#include <glm/gtc/type_ptr.hpp>
 #include <osg/CameraView>
 #include <osg/LightSource>
 #include <osg/LOD>
@@ -169,7 +167,7 @@ class SceneExporter
 public:
     SceneExporter(const osg::Node& scene, Report& report)
         : _report(report), _nodes(_writer, report), _geometries(_writer, _variants, report),
-          _characters(_writer, _nodes, _geometries), _clips(_writer, report)
+          _characters(_writer, _nodes, _geometries, report), _clips(_writer, report)
     {
         json first = json::object();
         if (!scene.getName().empty()) first["name"] = scene.getName();
@@ -290,24 +288,7 @@ private:
             return _report.warn("character " + quoted(character.getName()) + ": its joints would be deeper than " +
                                 std::to_string(NodeWriter::maxDepth) + " nodes; left out");
         const osg::Matrixd toPlace = toAbove * at.toPlace;
-        const CharacterReach reach(set, (at.place ? at.place->reach : TransformBound()) *
-                                            TransformBound::of(glm::make_mat4(toPlace.ptr())));
-        if (!reach.fits())
-            return _report.warn("character " + quoted(character.getName()) +
-                                ": its joints or their inverse binds lie " + outOfRangeText() + "; left out");
-        for (const std::string& clip : reach.clipsLeftOut())
-            _report.warn("clip " + quoted(clip) + ": it takes joints " + outOfRangeText() + "; left out");
-        std::vector<CharacterMesh> meshes = meshesOf(character, at);
-        const auto isFar = [&](const CharacterMesh& each)
-        {
-            const bool isNear = reach.reaches(*each.mesh, _geometries);
-            if (!isNear)
-                _report.warn("mesh " + quoted(each.mesh->getName()) + ": its vertices lie " + outOfRangeText() +
-                             "; left out");
-            return !isNear;
-        };
-        meshes.erase(std::remove_if(meshes.begin(), meshes.end(), isFar), meshes.end());
-        _written.push_back(_characters.write(reach.set(), meshes, toPlace, character.getName(), at.place));
+        _written.push_back(_characters.write(set, meshesOf(character, at), toPlace, character.getName(), at.place));
         TraversalState below = at;
         below.character = &_written.back();
         enter(character, below);
@@ -433,13 +414,6 @@ private:
             }
             if (!number->second) continue;
             const auto& [above, isHidden] = place;
-            const TransformBound reach = above ? above->reach : TransformBound();
-            if (!std::all_of(parts.begin(), parts.end(),
-                             [&](const auto& part) { return isNear(reach, _geometries.radiusOf(*part.first)); }))
-            {
-                _report.warn("mesh " + quoted(name) + ": its vertices lie " + outOfRangeText() + "; left out");
-                continue;
-            }
             const std::size_t node =
                 isHidden ? _nodes.add(name, JointTransform(), above) : _nodes.nodeFor(above, "mesh", name);
             _nodes.at(node)["mesh"] = *number->second;

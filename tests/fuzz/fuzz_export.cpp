@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // libFuzzer target: scenes of OSG and of the kit, made from the input, through the export and back through the import.
-// Whatever is written must be read without an error and without a warning.
+// Whatever is written must be read without an error, and without a warning but those about clips and meshes far out.
 #include "gltf/Export.h"
 #include "gltf/Import.h"
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/bounds/TransformBound.h>
 #include <osgGpuAnimation/authoring/ClipBuilder.h>
 #include <osgGpuAnimation/looks/CharacterProgram.h>
 #include <osgGpuAnimation/looks/PbrMaterial.h>
@@ -469,6 +470,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     options.noLights = true; // their data are checked all the same; a warning says that OpenGL shows seven
     const Result<ImportedModel> read = importModel(glb.value(), "", options);
     if (!read) fail(read.error().message);
-    if (!read.value().messages.warnings.empty()) fail(read.value().messages.warnings.front());
+    for (const std::string& warning : read.value().messages.warnings)
+        if (warning.find(outOfRangeText()) == std::string::npos) fail(warning);
     return 0;
 }

@@ -33,17 +33,17 @@ namespace
 using Warnings = std::vector<std::string>;
 constexpr float nan = std::numeric_limits<float>::quiet_NaN(), infinite = std::numeric_limits<float>::infinity();
 
-/// The scene after export and import, which has to read all of it without a fault. Null: the export refused it.
+/// The scene after export and import, which has to read it with these warnings alone. Null: the export refused it.
 struct Reread
 {
-    explicit Reread(const osg::Node& scene)
+    explicit Reread(const osg::Node& scene, const Warnings& ofImport = {})
     {
         Report report(messages);
         const Result<std::string> glb = exportModel(scene, report);
         if (!glb) error = glb.error().message;
         if (!glb) return;
         model = valueOf(importModel(glb.value(), "", {}));
-        EXPECT_EQ(model.messages.warnings, Warnings());
+        EXPECT_EQ(model.messages.warnings, ofImport);
     }
 
     Messages messages;
@@ -119,6 +119,13 @@ osg::ref_ptr<osg::Node> below(const osg::Matrixd& matrix, const std::string& nam
     osg::ref_ptr<osg::MatrixTransform> made = new osg::MatrixTransform(matrix);
     made->setName(name);
     made->addChild(plainTriangle("triangle"));
+    return made;
+}
+
+osg::ref_ptr<osg::Node> scaled(double scale, osg::ref_ptr<osg::Node> child)
+{
+    osg::ref_ptr<osg::MatrixTransform> made = new osg::MatrixTransform(osg::Matrixd::scale(scale, scale, scale));
+    made->addChild(child);
     return made;
 }
 
@@ -236,29 +243,53 @@ osg::ref_ptr<osg::Node> farClip()
     return made;
 }
 
+/// A mesh that follows one joint by two inverse binds, one of them shifted.
+osg::ref_ptr<osg::Node> boundTwice(float shift)
+{
+    AffineMatrix shifted;
+    shifted.rows[0].w = shift;
+    AnimationParts parts{Skeleton::create({{"joint", -1, {}, 0}}).value(), {}, {}, {}, {}};
+    parts.skins = {{"one", {0}, {AffineMatrix()}}, {"other", {0}, {shifted}}};
+    const auto set = AnimationSet::create(std::move(parts)).value();
+    const osg::ref_ptr<SkinnedGeometry> mesh = rigidTriangle(*set, 0);
+    const osg::ref_ptr<osg::Vec4usArray> entries = new osg::Vec4usArray(3);
+    const osg::ref_ptr<osg::Vec4Array> weights = new osg::Vec4Array(3);
+    for (unsigned int vertex = 0; vertex < 3; ++vertex)
+    {
+        (*entries)[vertex].set(static_cast<GLushort>(set->entryOfSkin(0, 0)),
+                               static_cast<GLushort>(set->entryOfSkin(1, 0)), 0, 0);
+        (*weights)[vertex].set(0.5f, 0.5f, 0.0f, 0.0f);
+    }
+    mesh->setInfluences(0, entries, weights);
+    osg::ref_ptr<AnimatedCharacter> character = new AnimatedCharacter(set);
+    character->addChild(mesh);
+    return character;
+}
+
 TEST(ExportedFaultsTest, numbersThatNoFileCanHoldCostTheirElement)
 {
     const char notFinite[] = "mesh \"triangle\": numbers that are not finite or beyond 1e18 are written as 0";
     const char limited[] = "materials[0]: factors out of their range, which are limited";
     const char lightFault[] = "light \"\": its colour or cone is out of range; left out";
     const char cameraFault[] = "camera \"\": it has no vertical field of view; left out";
-    const char beyondFloats[] = "transform \"far\": its numbers are beyond floats; left out";
-    const char notAffine[] = "transform \"far\": it is not affine; left out";
+    const char faulty[] = "transform \"far\": it is not affine or has numbers beyond 1e18; left out";
     const struct
     {
         const char* name;
         osg::ref_ptr<osg::Node> scene;
         const char* warning; ///< null: none
     } cases[] = {
-        {"a place of 1e300", below(osg::Matrixd::translate(1e300, 0, 0)), beyondFloats},
-        {"a place of 1e30", below(osg::Matrixd::translate(1e30, 0, 0)),
-         "transform \"far\": it takes what is below farther out than 1e18, the limit for float numbers; left out"},
-        {"an infinite place", below(osg::Matrixd::translate(HUGE_VAL, 0, 0)), beyondFloats},
-        {"a place that is no number", below(osg::Matrixd::translate(0, std::nan(""), 0)), beyondFloats},
-        {"columns longer than floats", below(longColumns()), beyondFloats},
-        {"a perspective along x", below(changedMatrix(0, 3, 2.0)), notAffine},
-        {"a perspective along z", below(changedMatrix(2, 3, 2.0)), notAffine},
-        {"a divisor of 2", below(changedMatrix(3, 3, 2.0)), notAffine},
+        {"a place of 1e300", below(osg::Matrixd::translate(1e300, 0, 0)), faulty},
+        {"a place of 1e30", below(osg::Matrixd::translate(1e30, 0, 0)), faulty},
+        {"a place of 1e20 by a transform above", scaled(1e10, below(osg::Matrixd::translate(1e10, 0, 0))),
+         "node \"far\": its transform and those above take it farther out than 1e18, the limit for float numbers; its "
+         "own is left out"},
+        {"an infinite place", below(osg::Matrixd::translate(HUGE_VAL, 0, 0)), faulty},
+        {"a place that is no number", below(osg::Matrixd::translate(0, std::nan(""), 0)), faulty},
+        {"columns longer than floats", below(longColumns()), faulty},
+        {"a perspective along x", below(changedMatrix(0, 3, 2.0)), faulty},
+        {"a perspective along z", below(changedMatrix(2, 3, 2.0)), faulty},
+        {"a divisor of 2", below(changedMatrix(3, 3, 2.0)), faulty},
         {"a transform that flattens", below(osg::Matrixd::scale(0, 0, 0)), nullptr},
         {"a name that is no UTF-8", below(osg::Matrixd(), "\xff\xfe\x80 \x01 \""), nullptr},
         {"vertices", withVertices<osg::Vec3Array>(osg::Vec3(infinite, 0, 0)), notFinite},
@@ -276,8 +307,6 @@ TEST(ExportedFaultsTest, numbersThatNoFileCanHoldCostTheirElement)
         {"a cone within its inner one", lit(1.0f, 20.0f, 30.0f, 10.0f), nullptr},
         {"a camera of 180 degrees", seen(180.0), cameraFault},
         {"a camera of no number", seen(std::nan("")), cameraFault},
-        {"a clip far out", farClip(),
-         "clip \"far\": it takes joints farther out than 1e18, the limit for float numbers; left out"},
         {"a steep spline", steepClip(),
          "clip \"steep\": the translation of node \"joint 0\" has slopes beyond floats; left out"},
     };
@@ -363,25 +392,26 @@ TEST(ExportedFaultsTest, jointsDeeperThanTheImportReadsAreLeftOut)
 // A skin of glTF has each joint once.
 TEST(ExportedFaultsTest, aMeshMayFollowAJointByTwoInverseBinds)
 {
-    AffineMatrix shifted;
-    shifted.rows[0].w = 1.0f;
-    AnimationParts parts{Skeleton::create({{"joint", -1, {}, 0}}).value(), {}, {}, {}, {}};
-    parts.skins = {{"one", {0}, {AffineMatrix()}}, {"other", {0}, {shifted}}};
-    const auto set = AnimationSet::create(std::move(parts)).value();
-    const osg::ref_ptr<SkinnedGeometry> mesh = rigidTriangle(*set, 0);
-    const osg::ref_ptr<osg::Vec4usArray> entries = new osg::Vec4usArray(3);
-    const osg::ref_ptr<osg::Vec4Array> weights = new osg::Vec4Array(3);
-    for (unsigned int vertex = 0; vertex < 3; ++vertex)
-    {
-        (*entries)[vertex].set(static_cast<GLushort>(set->entryOfSkin(0, 0)),
-                               static_cast<GLushort>(set->entryOfSkin(1, 0)), 0, 0);
-        (*weights)[vertex].set(0.5f, 0.5f, 0.0f, 0.0f);
-    }
-    mesh->setInfluences(0, entries, weights);
-    const osg::ref_ptr<AnimatedCharacter> character = new AnimatedCharacter(set);
-    character->addChild(mesh);
-    const Reread reread(*character);
+    const Reread reread(*boundTwice(1.0f));
     EXPECT_EQ(reread.error, "");
+    EXPECT_EQ(reread.messages.warnings, Warnings());
+    EXPECT_EQ(reread.model.primitives.size(), 1u);
+}
+
+TEST(ExportedFaultsTest, inverseBindMatricesThatTakeVerticesFarOutAreTheIdentity)
+{
+    const Reread reread(*boundTwice(1e30f));
+    EXPECT_EQ(reread.messages.warnings, // of the set's skin and of the mesh's own one
+              Warnings(2, "inverse bind matrix of joint \"joint\": it takes vertices farther out than 1e18, the limit "
+                          "for float numbers; the identity is written"));
+    EXPECT_EQ(reread.model.primitives.size(), 1u);
+}
+
+TEST(ExportedFaultsTest, aClipThatTransformsTakeFarOutCostsItself)
+{
+    const Reread reread(*farClip(),
+                        {"animations[0] \"far\": it takes joints or weights farther out than 1e18, the limit "
+                         "for float numbers; clip skipped"});
     EXPECT_EQ(reread.messages.warnings, Warnings());
     EXPECT_EQ(reread.model.primitives.size(), 1u);
 }

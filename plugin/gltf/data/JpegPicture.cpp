@@ -5,6 +5,10 @@
 
 #include <turbojpeg.h>
 
+#include <algorithm>
+#include <memory>
+#include <utility>
+
 namespace osgGpuAnimation::gltf
 {
 
@@ -13,57 +17,40 @@ namespace
 
 using Bytes = std::vector<unsigned char>;
 
-class JpegReader
+using Turbo = std::unique_ptr<void, int (*)(tjhandle)>;
+
+/// Width and height; 0 where the header is damaged.
+std::pair<int, int> sizeOf(const Turbo& turbo, const Bytes& bytes)
 {
-public:
-    explicit JpegReader(const Bytes& bytes) : _bytes(bytes), _turbo(tjInitDecompress())
-    {
-        // The result is ignored: it is an error for sampling factors without a name in libturbojpeg, which decodes
-        // them all the same. The size stays 0 where the header is damaged.
-        int sampling = 0, space = 0;
-        if (_turbo) tjDecompressHeader3(_turbo, _bytes.data(), _bytes.size(), &_width, &_height, &sampling, &space);
-    }
-    ~JpegReader()
-    {
-        if (_turbo) tjDestroy(_turbo);
-    }
-    JpegReader(const JpegReader&) = delete;
-
-    bool hasHeader() const { return _width > 0 && _height > 0; }
-    std::size_t width() const { return static_cast<std::size_t>(_width); }
-    std::size_t height() const { return static_cast<std::size_t>(_height); }
-    bool readRows(osg::Image& image)
-    {
-        const int result = tjDecompress2(_turbo, _bytes.data(), _bytes.size(), image.data(), _width,
-                                         static_cast<int>(image.getRowSizeInBytes()), _height, TJPF_RGB,
-                                         TJFLAG_BOTTOMUP | TJFLAG_LIMITSCANS);
-        return result == 0 ||
-               tjGetErrorCode(_turbo) == TJERR_WARNING; // a cut-off file: decodes the pixels before the cut
-    }
-
-private:
-    const Bytes& _bytes;
-    tjhandle _turbo;
-    int _width = 0;
-    int _height = 0;
-};
+    // The result is ignored: it is an error for sampling factors without a name in libturbojpeg, which decodes them all
+    // the same.
+    int width = 0, height = 0, sampling = 0, space = 0;
+    if (turbo) tjDecompressHeader3(turbo.get(), bytes.data(), bytes.size(), &width, &height, &sampling, &space);
+    return {std::max(width, 0), std::max(height, 0)};
+}
 
 } // namespace
 
 Result<PictureHeader> readJpegHeader(const Bytes& bytes)
 {
-    const JpegReader reader(bytes);
-    if (!reader.hasHeader()) return unexpected("a JPEG header", "one that is cut off or damaged");
-    return checkJpegSize(static_cast<std::uint32_t>(reader.width()), static_cast<std::uint32_t>(reader.height()),
-                         bytes);
+    const auto [width, height] = sizeOf(Turbo(tjInitDecompress(), tjDestroy), bytes);
+    if (width == 0 || height == 0) return unexpected("a JPEG header", "one that is cut off or damaged");
+    return checkJpegSize(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), bytes);
 }
 
 Result<osg::ref_ptr<osg::Image>> decodeJpeg(const Bytes& bytes)
 {
-    JpegReader reader(bytes);
-    if (!reader.hasHeader()) return damagedPicture();
-    const osg::ref_ptr<osg::Image> image = newImage(reader.width(), reader.height(), GL_RGB, GL_UNSIGNED_BYTE);
-    if (!image->data() || !reader.readRows(*image)) return damagedPicture();
+    const Turbo turbo(tjInitDecompress(), tjDestroy);
+    const auto [width, height] = sizeOf(turbo, bytes);
+    if (width == 0 || height == 0) return damagedPicture();
+    const osg::ref_ptr<osg::Image> image =
+        newImage(static_cast<std::size_t>(width), static_cast<std::size_t>(height), GL_RGB, GL_UNSIGNED_BYTE);
+    if (!image->data()) return damagedPicture();
+    const int result = tjDecompress2(turbo.get(), bytes.data(), bytes.size(), image->data(), width,
+                                     static_cast<int>(image->getRowSizeInBytes()), height, TJPF_RGB,
+                                     TJFLAG_BOTTOMUP | TJFLAG_LIMITSCANS);
+    // A warning is a cut-off file: its pixels before the cut are decoded.
+    if (result != 0 && tjGetErrorCode(turbo.get()) != TJERR_WARNING) return damagedPicture();
     return image;
 }
 

@@ -40,7 +40,6 @@ struct PrimitiveMaterials
 /// visit: for the material of each mapping, with the numbers of its variants.
 void forEachVariantMaterial(const tinygltf::Primitive& primitive,
                             const std::function<void(int material, const tinygltf::Value& variants)>& visit);
-/// The document has passed checkVariantRules().
 PrimitiveMaterials materialsOf(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
                                MapsOfMaterials& maps);
 

@@ -30,7 +30,7 @@ bool isMorphable(Kind kind)
 }
 
 /// Does nothing if the object has no such member.
-void leaveOut(const JsonValue& object, const JsonValue& member, const std::string& name, const char* why,
+void leaveOut(const JsonValue& object, const JsonValue& member, const std::string& name, const std::string& why,
               Report& report)
 {
     if (!member) return;
@@ -111,6 +111,25 @@ std::optional<Error> checkDraco(const JsonValue& primitive, const PrimitiveName&
     return std::nullopt;
 }
 
+/// A mapping with a variant that occurs before in the primitive loses its members (KHR_materials_variants).
+void checkMappings(const JsonValue& mappings, const std::string& name, Report& report)
+{
+    std::unordered_set<double> taken;
+    std::size_t i = 0;
+    for (const JsonValue& mapping : mappings)
+    {
+        const std::string place = elementName(name, i++) + ".variants";
+        for (const JsonValue& variant : mapping["variants"])
+        {
+            if (taken.insert(variant.number()).second) continue;
+            report.warn(fault(place, "each variant once", variant.description() + " again").message +
+                        "; the element is left out");
+            mapping.dropMembers();
+            break;
+        }
+    }
+}
+
 /// Primitives (glTF 2.0, section 3.7.2): attributes that glTF does not know, and sets that do not follow set 0, are
 /// left out; a primitive without POSITION loses all its attributes and keeps its place; all primitives of a mesh have
 /// the same number of morph targets.
@@ -131,6 +150,9 @@ std::optional<Error> checkPrimitiveRules(const JsonValue& meshes, Report& report
                 return fault(name.text() + ".targets", std::to_string(targets) + " as in the primitives before", count);
             if (std::optional<Error> error = checkDraco(primitive, name)) return error;
             checkPrimitive(primitive, name, report);
+            if (const JsonValue variants = primitive["extensions"]["KHR_materials_variants"])
+                checkMappings(variants["mappings"], name.text() + ".extensions.KHR_materials_variants.mappings",
+                              report);
             ++p;
         }
         const JsonValue weights = mesh["weights"];
@@ -254,6 +276,43 @@ void checkNodeRules(const JsonValue& nodes, Report& report)
     }
 }
 
+/// A camera without the view of its type (glTF 2.0, section 3.10) loses its members and keeps its place.
+void checkCameras(const JsonValue& cameras, Report& report)
+{
+    std::size_t i = 0;
+    for (const JsonValue& camera : cameras)
+    {
+        const std::string name = elementName("cameras", i++);
+        const JsonValue type = camera["type"];
+        if (!type) continue;
+        const JsonValue view = camera[type.text()], height = view["ymag"];
+        if (view && !(height && height.number() == 0.0)) continue;
+        report.warn(fault(name + '.' + std::string(type.text()), "the size of the view", height.description()).message +
+                    "; the element is left out");
+        camera.dropMembers();
+    }
+}
+
+/// Spots without their cone lose their members and keep their place (KHR_lights_punctual).
+void checkLights(const JsonValue& lights, Report& report)
+{
+    constexpr double defaultOuterAngle = 0.7853981633974483; // pi / 4
+    std::size_t i = 0;
+    for (const JsonValue& light : lights)
+    {
+        const std::string name = elementName("extensions.KHR_lights_punctual.lights", i++) + ".spot";
+        const JsonValue type = light["type"], spot = light["spot"];
+        const JsonValue inner = spot["innerConeAngle"], outer = spot["outerConeAngle"];
+        if (type && type.text() == "spot" && !spot)
+        {
+            report.warn(fault(name, "an object", "nothing").message + "; the element is left out");
+            light.dropMembers();
+        }
+        else if (inner && inner.number() >= (outer ? outer.number() : defaultOuterAngle))
+            leaveOut(spot, inner, name, "expected an angle below outerConeAngle, found " + inner.description(), report);
+    }
+}
+
 const std::string_view supportedExtensions[] = {"KHR_mesh_quantization",      "KHR_texture_transform",
                                                 "KHR_materials_unlit",        "KHR_materials_emissive_strength",
                                                 "KHR_materials_ior",          "KHR_materials_specular",
@@ -347,8 +406,8 @@ std::optional<Error> checkDocumentRules(const JsonValue& document, Report& repor
     if (!error) error = checkAnimationRules(document["animations"], report);
     if (error) return error;
     checkNodeRules(document["nodes"], report);
-    checkViewRules(document, report);
-    checkVariantRules(document, report);
+    checkCameras(document["cameras"], report);
+    checkLights(document["extensions"]["KHR_lights_punctual"]["lights"], report);
     if (!document["scenes"])
         report.note("scenes: the document has none: it is a library of parts");
     else if (!document["scene"])

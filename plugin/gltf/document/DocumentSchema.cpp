@@ -179,9 +179,11 @@ constexpr SchemaRule material[] = {object("pbrMetallicRoughness", metallicRoughn
 
 constexpr SchemaRule draco[] = {index("bufferView", "bufferViews").required(),
                                 rule("attributes", Kind::Any).required()};
-// checkVariantRules() checks variants, so that a faulty mapping costs only itself.
-constexpr SchemaRule variants = rule("KHR_materials_variants", Kind::Any);
-constexpr SchemaRule primitiveExtensions[] = {object("KHR_draco_mesh_compression", draco), variants};
+constexpr SchemaRule mapping[] = {index("material", "materials").required(),
+                                  index("variants", "variants").list(0).required()};
+constexpr SchemaRule mappings[] = {object("mappings", mapping).list().required().emptyIfInvalid()};
+constexpr SchemaRule primitiveExtensions[] = {object("KHR_draco_mesh_compression", draco),
+                                              object("KHR_materials_variants", mappings).dropIfInvalid()};
 
 constexpr SchemaRule primitive[] = {indexMap("attributes", "accessors").required(),
                                     index("indices", "accessors"),
@@ -194,14 +196,13 @@ constexpr SchemaRule mesh[] = {object("primitives", primitive).list().required()
                                extras};
 
 constexpr SchemaRule instancing[] = {indexMap("attributes", "accessors").required()};
-// checkViewRules() checks the lights, so that a faulty one costs only itself.
-constexpr SchemaRule punctual = rule("KHR_lights_punctual", Kind::Any);
+constexpr SchemaRule nodeLight[] = {index("light", "lights").required().dropIfInvalid()};
 constexpr SchemaRule visibility[] = {rule("visible", Kind::Boolean).dropIfInvalid()};
 // validateLods() checks which nodes may be levels.
 constexpr SchemaRule lod[] = {index("ids", "nodes").list().required().dropIfInvalid()};
-constexpr SchemaRule nodeExtensions[] = {object("EXT_mesh_gpu_instancing", instancing), punctual,
-                                         object("MSFT_lod", lod).dropIfInvalid(),
-                                         object("KHR_node_visibility", visibility).dropIfInvalid()};
+constexpr SchemaRule nodeExtensions[] = {
+    object("EXT_mesh_gpu_instancing", instancing), object("KHR_lights_punctual", nodeLight).dropIfInvalid(),
+    object("MSFT_lod", lod).dropIfInvalid(), object("KHR_node_visibility", visibility).dropIfInvalid()};
 
 constexpr SchemaRule node[] = {index("camera", "cameras"),
                                index("children", "nodes").list(),
@@ -221,19 +222,32 @@ constexpr SchemaRule scene[] = {index("nodes", "nodes").list(), name, extras};
 constexpr SchemaRule skin[] = {index("inverseBindMatrices", "accessors"), index("skeleton", "nodes"),
                                index("joints", "nodes").list().required(), name};
 
-// Of cameras, the size of the view counts: checkViewRules() leaves out those without one.
-constexpr SchemaRule perspective[] = {number("yfov").dropIfInvalid()};
-constexpr SchemaRule orthographic[] = {number("ymag").dropIfInvalid()};
-constexpr SchemaRule camera[] = {choice("type", "perspective orthographic").dropIfInvalid(),
-                                 object("perspective", perspective).dropIfInvalid(),
-                                 object("orthographic", orthographic).dropIfInvalid(), name};
+// Of cameras, only the size of the view is read.
+constexpr SchemaRule perspective[] = {number("yfov").from(aboveZero).upTo(belowPi).required()};
+constexpr SchemaRule orthographic[] = {number("ymag").required()};
+constexpr SchemaRule camera[] = {choice("type", "perspective orthographic").required(),
+                                 object("perspective", perspective), object("orthographic", orthographic), name};
+
+constexpr SchemaRule spot[] = {number("innerConeAngle").from(0).upTo(halfPi),
+                               number("outerConeAngle").from(aboveZero).upTo(halfPi)};
+constexpr SchemaRule light[] = {choice("type", "directional point spot").required(),
+                                number("color").list(3, 3).from(0).withRangeFault(OnFault::Refuse),
+                                number("intensity").from(0),
+                                number("range").from(aboveZero),
+                                object("spot", spot).dropIfInvalid(),
+                                name};
+constexpr SchemaRule lights[] = {object("lights", light).list().required().emptyIfInvalid()};
+
+constexpr SchemaRule variant[] = {text("name").required()};
+constexpr SchemaRule variants[] = {object("variants", variant).list().required().emptyIfInvalid()};
 
 // ------------------------------------------------------------------------------------------------------ the document
 
 constexpr SchemaRule asset[] = {text("version").required(), text("minVersion"), text("generator").dropIfInvalid(),
                                 text("copyright").dropIfInvalid()};
 
-constexpr SchemaRule documentExtensions[] = {punctual, variants};
+constexpr SchemaRule documentExtensions[] = {object("KHR_lights_punctual", lights).dropIfInvalid(),
+                                             object("KHR_materials_variants", variants).dropIfInvalid()};
 
 constexpr SchemaRule documentMembers[] = {object("asset", asset).required(),
                                           text("extensionsUsed").list(),
@@ -242,7 +256,7 @@ constexpr SchemaRule documentMembers[] = {object("asset", asset).required(),
                                           object("animations", animation).list(),
                                           object("buffers", buffer).list(),
                                           object("bufferViews", bufferView).list(),
-                                          object("cameras", camera).list(),
+                                          object("cameras", camera).list().emptyIfInvalid(),
                                           object("extensions", documentExtensions).dropIfInvalid(),
                                           object("images", image).list(),
                                           object("materials", material).list(),
@@ -295,6 +309,13 @@ class SchemaCheck
 public:
     SchemaCheck(const JsonValue& document, Report& report) : _document(document), _report(report)
     {
+        const JsonValue extensions = document["extensions"];
+        for (const auto& [extension, member] :
+             {std::pair("KHR_lights_punctual", "lights"), {"KHR_materials_variants", "variants"}})
+        {
+            const JsonValue list = extensions[extension][member];
+            _sizes.emplace_back(member, list.is(Type::Array) ? list.size() : 0);
+        }
         for (const JsonValue& member : document)
             if (member.is(Type::Array)) _sizes.emplace_back(member.key(), member.size());
     }
@@ -375,6 +396,12 @@ private:
         for (const JsonValue& element : value)
         {
             outcome = checkElement(element, rule);
+            if (outcome != Outcome::Good && rule.onFault == OnFault::Empty)
+            {
+                _report.warn(_finding.message + "; the element is left out");
+                element.dropMembers();
+                outcome = Outcome::Good;
+            }
             if (outcome != Outcome::Good) break;
             ++_path.back().index;
         }
@@ -493,7 +520,8 @@ private:
 
     JsonValue _document;
     Report& _report;
-    std::vector<std::pair<std::string_view, std::size_t>> _sizes; ///< of the arrays of the document
+    /// Of the arrays that indices refer to; those of extensions come first: an array of the document may have any name.
+    std::vector<std::pair<std::string_view, std::size_t>> _sizes;
     std::vector<Step> _path;
     Error _finding; ///< the last fault, recorded while its path is known
 };

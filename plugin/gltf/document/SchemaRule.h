@@ -12,6 +12,9 @@ namespace osgGpuAnimation::gltf::schema
 constexpr double maxInteger = 9007199254740991.0; // 2^53 - 1: exact in every JSON reader (section 2.7)
 constexpr double maxInt = 2147483647.0;
 constexpr double maxFloat = 3.4028234663852886e38;
+constexpr double aboveZero = 1e-300; // the least number where glTF asks for one above 0
+constexpr double belowPi = 3.14159265358979;
+constexpr double halfPi = 1.5707964; // pi / 2 as a float, rounded up
 constexpr std::size_t anyCount = std::size_t(-1);
 
 /// The consequence for a member that breaks its rule.
@@ -19,6 +22,7 @@ enum class OnFault : std::uint8_t
 {
     Refuse,   ///< the document is refused
     LeaveOut, ///< a warning; the member counts as absent
+    Empty,    ///< of a list: a warning; an element with a fault loses its members and keeps its place
     Clamp     ///< a warning; the number becomes the nearest allowed one (numbers out of range only)
 };
 
@@ -69,6 +73,8 @@ struct SchemaRule
     {
         return with(&SchemaRule::onFault, OnFault::LeaveOut).withRangeFault(OnFault::LeaveOut);
     }
+    /// A fault in an element of the list, or in what the element requires, costs that element.
+    constexpr SchemaRule emptyIfInvalid() const { return with(&SchemaRule::onFault, OnFault::Empty); }
     constexpr SchemaRule from(double first) const { return with(&SchemaRule::min, first); }
     constexpr SchemaRule upTo(double last) const { return with(&SchemaRule::max, last); }
     constexpr SchemaRule clamped(double first, double last) const

@@ -110,15 +110,20 @@ void CharacterWriter::writeSkins(const AnimationSet& set, WrittenCharacter& made
         for (std::size_t place = 0; place < _skins[number].size(); ++place)
         {
             const PaletteEntry& entry = set.palette()[_skins[number][place]];
-            const AffineMatrix& inverseBind = isOfSet ? set.skins()[number].inverseBinds[place] : entry.inverseBind;
+            AffineMatrix inverseBind = isOfSet ? set.skins()[number].inverseBinds[place] : entry.inverseBind;
+            const std::string& jointName = set.skeleton().joint(static_cast<std::size_t>(entry.joint)).name;
+            if (!TransformBound::of(inverseBind.toColumns()).fits())
+            {
+                _report.warn("inverse bind matrix of joint " + quoted(jointName) + ": it takes vertices " +
+                             outOfRangeText() + "; the identity is written");
+                inverseBind = AffineMatrix();
+            }
             for (int column = 0; column < 4; ++column)
                 for (std::size_t row = 0; row < 4; ++row)
                     matrices.push_back(row < 3 ? inverseBind.rows[row][column] : column < 3 ? 0.0f : 1.0f);
             std::size_t node = elementOf(made.nodeOfJoint, entry.joint);
             // A skin has each node once: a joint with two inverse bind matrices gets a node below it.
-            if (!nodes.insert(node).second)
-                node = _nodes.add(set.skeleton().joint(static_cast<std::size_t>(entry.joint)).name, JointTransform(),
-                                  &_nodes.placeOf(node));
+            if (!nodes.insert(node).second) node = _nodes.add(jointName, JointTransform(), &_nodes.placeOf(node));
             skin["joints"].push_back(node);
             for (int joint = entry.joint; joint >= 0;
                  joint = set.skeleton().joint(static_cast<std::size_t>(joint)).parent)

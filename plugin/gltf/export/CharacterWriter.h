@@ -42,8 +42,8 @@ struct WrittenCharacter
 class CharacterWriter
 {
 public:
-    CharacterWriter(GlbWriter& writer, NodeWriter& nodes, GeometryWriter& geometries)
-        : _writer(writer), _nodes(nodes), _geometries(geometries)
+    CharacterWriter(GlbWriter& writer, NodeWriter& nodes, GeometryWriter& geometries, Report& report)
+        : _writer(writer), _nodes(nodes), _geometries(geometries), _report(report)
     {
     }
 
@@ -79,6 +79,7 @@ private:
     GlbWriter& _writer;
     NodeWriter& _nodes;
     GeometryWriter& _geometries;
+    Report& _report;
     std::vector<Entries> _skins; ///< of the character that is being written: those of the set, then others
     std::vector<Group> _groups;
     std::size_t _firstSkin = 0; ///< the number in the file of _skins[0]

@@ -229,22 +229,6 @@ bool isDrawable(const IndexedPart& part)
 
 } // namespace
 
-double GeometryWriter::radiusOf(const osg::Geometry& geometry)
-{
-    const auto [known, isNew] = _radii.try_emplace(geometry.getVertexArray());
-    if (!isNew) return known->second;
-    const Values numbers = numbersOf(geometry.getVertexArray(), 3);
-    double squared = 0.0;
-    for (std::size_t at = 0; at + 2 < numbers.size(); at += 3)
-    {
-        osg::Vec3d point;
-        for (int i = 0; i < 3; ++i)
-            if (const float number = numbers[at + static_cast<std::size_t>(i)]; isWritten(number)) point[i] = number;
-        squared = std::max(squared, point.length2());
-    }
-    return known->second = std::sqrt(squared);
-}
-
 GeometryWriter::Values GeometryWriter::finite(Values values)
 {
     bool isFinite = true;

@@ -39,9 +39,6 @@ public:
     /// follow their node. Empty, with a warning, if nothing can be drawn.
     nlohmann::json primitivesOf(const osg::Geometry& geometry, const osg::StateSet& state, const SkinPlaces* skin);
 
-    /// The largest distance of the geometry's written vertices from its origin.
-    double radiusOf(const osg::Geometry& geometry);
-
 private:
     using Attributes = nlohmann::json;
     using Values = std::vector<float>;
@@ -59,8 +56,7 @@ private:
     MaterialWriter _materials;
     const std::vector<std::string>& _variants;
     Report& _report;
-    std::string _label;                         ///< of the drawable that is being written, for messages
-    std::map<const osg::Array*, double> _radii; ///< by vertex array
+    std::string _label; ///< of the drawable that is being written, for messages
     /// by array, number of vertices and name; none: the array cannot be written
     std::map<std::tuple<const osg::Array*, std::size_t, std::string>, std::optional<std::size_t>> _accessors;
     std::map<std::tuple<const osg::Array*, const osg::Array*, SkinPlaces, std::size_t>, Attributes> _influences;

@@ -5,71 +5,55 @@
 
 #include <glm/geometric.hpp>
 
-#include <limits>
 #include <utility>
 
 namespace osgGpuAnimation::gltf
 {
 
-namespace
-{
-
-struct CheckedTransform
-{
-    NodeTransform transform; ///< the identity if there is a fault
-    std::string fault;       ///< empty: none
-    TransformBound reach;
-};
-
-/// above: the bound of the place above.
-CheckedTransform checked(const osg::Matrixd& matrix, const TransformBound& above)
-{
-    const CheckedTransform faulty{{}, "its numbers are beyond floats", above};
-    const auto isFloat = [](double number) { return std::abs(number) <= std::numeric_limits<float>::max(); };
-    if (!std::all_of(matrix.ptr(), matrix.ptr() + 16, isFloat)) return faulty;
-    if (matrix(0, 3) != 0.0 || matrix(1, 3) != 0.0 || matrix(2, 3) != 0.0 || matrix(3, 3) != 1.0)
-        return {{}, "it is not affine", above};
-    tinygltf::Node source;
-    source.matrix.assign(matrix.ptr(), matrix.ptr() + 16); // OSG's rows are glTF's columns
-    CheckedTransform made{decompose(source), "", above};
-    // Scales are lengths of columns, which may be beyond floats where the columns' numbers are not.
-    if (!made.transform.inner.isFinite()) return faulty;
-    if (made.transform.outer && !made.transform.outer->isFinite()) return faulty;
-    if (made.transform.outer) made.reach = made.reach * TransformBound::of(*made.transform.outer);
-    made.reach = made.reach * TransformBound::of(made.transform.inner);
-    return isNear(made.reach, 0.0) ? made : CheckedTransform{{}, "it takes what is below " + outOfRangeText(), above};
-}
-
-} // namespace
-
 NodePlace& NodeWriter::place(NodePlace* above, const osg::Matrixd& toAbove, const std::string& name)
 {
-    const CheckedTransform own = checked(toAbove, above ? above->reach : TransformBound());
-    if (!own.fault.empty()) _report.warn("transform " + quoted(name) + ": " + own.fault + "; left out");
-    const std::size_t depth = (above ? above->depth : 0) + (own.transform.outer ? 2 : 1);
-    _places.push_back({above, own.transform, name, std::nullopt, depth, own.reach});
+    const auto isSmall = [](double number) { return std::abs(number) <= TransformBound::maxNumber; };
+    const bool isAffine = toAbove(0, 3) == 0.0 && toAbove(1, 3) == 0.0 && toAbove(2, 3) == 0.0 && toAbove(3, 3) == 1.0;
+    NodeTransform transform;
+    if (isAffine && std::all_of(toAbove.ptr(), toAbove.ptr() + 16, isSmall))
+    {
+        tinygltf::Node source;
+        source.matrix.assign(toAbove.ptr(), toAbove.ptr() + 16); // OSG's rows are glTF's columns
+        transform = decompose(source);
+    }
+    else
+        _report.warn("transform " + quoted(name) + ": it is not affine or has numbers beyond 1e18; left out");
+    _places.push_back({above, transform, name, std::nullopt, (above ? above->depth : 0) + (transform.outer ? 2 : 1)});
     return _places.back();
 }
 
 NodePlace& NodeWriter::placeOf(std::size_t node)
 {
-    _places.push_back({nullptr, {}, "", node, _ofNode[node].first, _ofNode[node].second});
+    _places.push_back({nullptr, {}, "", node, _ofNode[node].first});
     return _places.back();
 }
 
-std::size_t NodeWriter::add(const std::string& name, const JointTransform& toAbove, NodePlace* above)
+std::size_t NodeWriter::add(const std::string& name, JointTransform toAbove, NodePlace* above)
 {
     nlohmann::json node = nlohmann::json::object();
     if (!name.empty()) node["name"] = name;
+    const auto [depth, outer] = above ? _ofNode[nodeOf(*above)] : std::pair(std::size_t(0), TransformBound());
+    TransformBound reach = outer * TransformBound::of(toAbove);
+    if (!reach.fits())
+    {
+        _report.warn("node " + quoted(name) + ": its transform and those above take it " + outOfRangeText() +
+                     "; its own is left out");
+        toAbove = JointTransform();
+        reach = outer;
+    }
     const glm::vec4 &t = toAbove.translation, &s = toAbove.scale;
     glm::vec4 r = toAbove.rotation;
     if (!(std::abs(glm::dot(r, r) - 1.0f) < 1e-3f)) r = glm::vec4(Rotation::unit(glm::dvec4(r)));
     if (glm::vec3(t) != glm::vec3(0.0f)) node["translation"] = {t.x, t.y, t.z};
     if (r != glm::vec4(0, 0, 0, 1)) node["rotation"] = {r.x, r.y, r.z, r.w};
     if (glm::vec3(s) != glm::vec3(1.0f)) node["scale"] = {s.x, s.y, s.z};
-    const auto [depth, reach] = above ? _ofNode[nodeOf(*above)] : std::pair(std::size_t(0), TransformBound());
     const std::size_t number = append(_writer.document["nodes"], std::move(node));
-    _ofNode.emplace_back(depth + 1, reach * TransformBound::of(toAbove));
+    _ofNode.emplace_back(depth + 1, reach);
     if (above)
         at(*above->node)["children"].push_back(number);
     else

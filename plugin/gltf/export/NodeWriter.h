@@ -31,19 +31,10 @@ struct NodePlace
     std::string name;                ///< may be empty
     std::optional<std::size_t> node; ///< once it is needed
     std::size_t depth = 0;           ///< nodes from a root to the place's own
-    TransformBound reach;            ///< from the place to the scene
 };
 
-/// True if the import reads points within the radius at such a place. It bounds some products in another way, hence the
-/// factor.
-inline bool isNear(const TransformBound& reach, double radius)
-{
-    return 2.0 * std::max({reach.stretch, reach.distance, reach.of(radius)}) <= TransformBound::maxNumber &&
-           std::isfinite(reach.stretch + reach.distance);
-}
-
 /// Writes the nodes of a file (glTF 2.0, section 3.5), each as T · R · S. A matrix that shears becomes two nodes; one
-/// that is not affine, or takes what is below farther out than the import reads, is left out, with a warning.
+/// that is not affine, or takes its node farther out than the import reads, is left out, with a warning.
 class NodeWriter
 {
 public:
@@ -59,7 +50,7 @@ public:
     NodePlace& placeOf(std::size_t node);
 
     /// A node of its own. above: null: the scene.
-    std::size_t add(const std::string& name, const JointTransform& toAbove, NodePlace* above);
+    std::size_t add(const std::string& name, JointTransform toAbove, NodePlace* above);
     /// The node of a place.
     std::size_t nodeOf(NodePlace& place);
     /// The node at the place that gets the member: the place's own if it does not have it, else a new one below it,

@@ -3,56 +3,40 @@
 
 #include <osgGpuAnimation/math/detail/System.h>
 
+#include <chrono>
 #include <iostream>
 #include <utility>
 
 namespace osgGpuAnimation::gltf
 {
 
-namespace
+ProgressLine::ProgressLine(std::string work)
 {
-
-constexpr std::chrono::milliseconds delay(500), interval(200);
-const char* const clear = "\r\x1b[K"; // to the line's begin; erase to its end
-
-} // namespace
-
-ProgressLine::ProgressLine(std::string work) : _work(std::move(work))
-{
-    if (system::isErrorTerminal()) _thread = std::thread(&ProgressLine::run, this);
+    if (!system::isErrorTerminal()) return;
+    _thread = std::thread(&ProgressLine::run, this, std::move(work), _end.get_future());
 }
 
 ProgressLine::~ProgressLine()
 {
-    if (!_thread.joinable()) return;
-    {
-        const std::lock_guard<std::mutex> lock(_mutex);
-        _isOver = true;
-    }
-    _change.notify_one();
-    _thread.join();
+    _end.set_value();
+    if (_thread.joinable()) _thread.join();
 }
 
-void ProgressLine::set(std::size_t done, std::size_t all)
+void ProgressLine::run(const std::string& work, const std::future<void>& end)
 {
-    const std::lock_guard<std::mutex> lock(_mutex);
-    _done = done;
-    _all = all;
-}
-
-void ProgressLine::run()
-{
-    std::unique_lock<std::mutex> lock(_mutex);
-    const auto isOver = [this] { return _isOver; };
-    if (_change.wait_for(lock, delay, isOver)) return;
+    constexpr std::chrono::milliseconds delay(500), interval(200);
+    const char* const clear = "\r\x1b[K"; // to the line's begin; erase to its end
+    const auto begin = std::chrono::steady_clock::now();
+    if (end.wait_for(delay) == std::future_status::ready) return;
     do
     {
         const auto seconds =
-            std::chrono::duration_cast<std::chrono::seconds>(std::chrono::steady_clock::now() - _begin).count();
-        std::cerr << clear << _work << ": ";
+            std::chrono::duration_cast<std::chrono::seconds>(std::chrono::steady_clock::now() - begin).count();
+        std::cerr << clear << work << ": ";
         if (_all > 0) std::cerr << _done << " of " << _all << ", ";
         std::cerr << seconds << " s" << std::flush;
-    } while (!_change.wait_for(lock, interval, isOver));
+    } while (end.wait_for(interval) != std::future_status::ready);
     std::cerr << clear << std::flush;
 }
+
 } // namespace osgGpuAnimation::gltf

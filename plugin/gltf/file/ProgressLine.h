@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <chrono>
-#include <condition_variable>
+#include <atomic>
 #include <cstddef>
-#include <mutex>
+#include <future>
 #include <string>
 #include <thread>
 
@@ -24,16 +23,17 @@ public:
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
 
-    void set(std::size_t done, std::size_t all);
+    void set(std::size_t done, std::size_t all)
+    {
+        _done = done;
+        _all = all;
+    }
 
 private:
-    void run();
-    const std::string _work;
-    const std::chrono::steady_clock::time_point _begin = std::chrono::steady_clock::now();
-    std::mutex _mutex;
-    std::condition_variable _change;
-    std::size_t _done = 0, _all = 0; ///< 0: the steps are not counted
-    bool _isOver = false;
+    void run(const std::string& work, const std::future<void>& end);
+
+    std::atomic<std::size_t> _done{0}, _all{0}; ///< 0: the steps are not counted
+    std::promise<void> _end;
     std::thread _thread; ///< only on a terminal
 };
 

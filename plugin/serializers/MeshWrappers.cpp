@@ -6,6 +6,7 @@
 #include <osgGpuAnimation/looks/shading/ShaderPermutations.h>
 #include <osgGpuAnimation/mesh/detail/MeshDetail.h>
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
+#include <osgGpuAnimation/mesh/geometry/PrimitiveRange.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 
@@ -131,21 +132,6 @@ Fault findFaultInArrays(const SkinnedGeometry& mesh, std::size_t vertices)
     return std::nullopt;
 }
 
-Fault findFaultInPrimitives(const SkinnedGeometry& mesh, std::size_t vertices)
-{
-    for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : mesh.getPrimitiveSetList())
-    {
-        if (!primitives) return "a missing primitive set";
-        if (const auto* range = dynamic_cast<const osg::DrawArrays*>(primitives.get()))
-            if (range->getFirst() < 0 || range->getCount() < 0) return "a range of vertices below 0";
-        const unsigned int count = primitives->getNumIndices();
-        const bool ascends = primitives->getType() == osg::PrimitiveSet::DrawArraysPrimitiveType;
-        for (unsigned int i = ascends && count > 0 ? count - 1 : 0; i < count; ++i)
-            if (primitives->index(i) >= vertices) return counted(primitives->index(i), "as a vertex", vertices);
-    }
-    return std::nullopt;
-}
-
 Fault findFaultInEntries(const SkinnedGeometry& mesh, std::size_t paletteSize)
 {
     const auto rigidEntry = static_cast<std::size_t>(std::max(mesh.getRigidEntry(), 0));
@@ -179,7 +165,8 @@ std::optional<std::string> findFault(const SkinnedGeometry& mesh, const Animatio
     if (!positions) return "no vertices";
     const std::size_t vertices = positions->getNumElements();
     if (const Fault fault = findFaultInArrays(mesh, vertices)) return fault;
-    if (const Fault fault = findFaultInPrimitives(mesh, vertices)) return fault;
+    for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : mesh.getPrimitiveSetList())
+        if (!isWithin(primitives, vertices)) return "a primitive set that is missing or beyond its vertices";
     if (const Fault fault = findFaultInEntries(mesh, set.paletteSize())) return fault;
     return findFaultInMorphs(mesh, set);
 }

@@ -69,19 +69,6 @@ void waitForLevels(const osg::Node& mesh)
     }
 }
 
-bool hasLevels(const SkinnedGeometry& mesh)
-{
-    waitForLevels(mesh);
-    return MeshDetail::findLevels(mesh) != nullptr;
-}
-
-void transferLevels(ValueStream& stream, SkinnedGeometry& mesh)
-{
-    stream.begin();
-    transferLodLevels(stream, mesh);
-    stream.close();
-}
-
 /// As the glTF reader does for the core profile; a texture does not store it.
 struct MipmapsAfterReading : osgDB::FinishedObjectReadCallback
 {
@@ -96,7 +83,12 @@ void addMeshProperties(osgDB::ObjectWrapper* wrapper)
     addProperty(wrapper, "Influences", &transferInfluences);
     addProperty<SkinnedGeometry>(wrapper, "MorphTargets", &transferMorphTargets,
                                  [](const SkinnedGeometry& mesh) { return !mesh.getMorphTargets().empty(); });
-    addProperty<SkinnedGeometry>(wrapper, "LodLevels", &transferLevels, &hasLevels);
+    const auto hasLevels = [](const SkinnedGeometry& mesh)
+    {
+        waitForLevels(mesh);
+        return MeshDetail::findLevels(mesh) != nullptr;
+    };
+    addProperty<SkinnedGeometry>(wrapper, "LodLevels", &transferLodLevels, hasLevels);
     wrapper->addFinishedObjectReadCallback(new MipmapsAfterReading);
 }
 

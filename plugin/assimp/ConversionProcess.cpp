@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "assimp/ConversionProcess.h"
 
-#include "assimp/ConversionOutput.h"
-
 #include <osgGpuAnimation/math/detail/System.h>
 
 #include <nlohmann/json.hpp>

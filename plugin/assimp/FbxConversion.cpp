@@ -57,22 +57,6 @@ glm::dvec3 inverseScale(const glm::dvec3& scale)
     return inverse;
 }
 
-void replaceChild(aiNode& parent, const aiNode& child, aiNode& with)
-{
-    std::replace(parent.mChildren, parent.mChildren + parent.mNumChildren, const_cast<aiNode*>(&child), &with);
-    with.mParent = &parent;
-}
-
-void addChild(aiNode& parent, aiNode& child)
-{
-    aiNode** const children = new aiNode*[parent.mNumChildren + 1];
-    std::copy(parent.mChildren, parent.mChildren + parent.mNumChildren, children);
-    children[parent.mNumChildren++] = &child;
-    delete[] parent.mChildren;
-    parent.mChildren = children;
-    child.mParent = &parent;
-}
-
 template <class T>
 T** newArray(const std::vector<T*>& elements, unsigned int& count)
 {
@@ -84,11 +68,8 @@ T** newArray(const std::vector<T*>& elements, unsigned int& count)
 
 const fbx::ModelTracks* tracksOf(const fbx::Take& take, int model)
 {
-    if (model < 0) return nullptr;
-    const auto number = static_cast<std::size_t>(model);
-    const auto found = std::lower_bound(take.models.begin(), take.models.end(), number,
-                                        [](const fbx::ModelTracks& each, std::size_t to) { return each.model < to; });
-    return found != take.models.end() && found->model == number ? &*found : nullptr;
+    const auto found = take.models.find(static_cast<std::size_t>(model)); // -1 becomes huge
+    return found == take.models.end() ? nullptr : &found->second;
 }
 
 /// Keys of the take from time 0 on. times: where the function bends or jumps, in any order; only those within the take
@@ -276,8 +257,11 @@ void FbxCompletion::place(aiNode& node, const fbx::Model& model, bool isBelowHid
         compensation.translation = rest.translation;
         compensation.scale = inverseScale(_fbx.models[static_cast<std::size_t>(model.parent)].scale);
         above->mTransformation = toAssimp(matrixOf(compensation));
-        replaceChild(*node.mParent, node, *above);
-        addChild(*above, node);
+        aiNode& parent = *node.mParent;
+        aiNode* below = &node;
+        std::replace(parent.mChildren, parent.mChildren + parent.mNumChildren, below, above);
+        above->mParent = &parent;
+        above->addChildren(1, &below);
         rest.translation = glm::dvec3(0.0);
     }
     node.mTransformation = toAssimp(matrixOf(rest));
@@ -304,7 +288,7 @@ void FbxCompletion::moveMeshes(aiNode& node, const fbx::Model& model)
         drawn->mTransformation = toAssimp(geometric);
         std::swap(drawn->mMeshes, node.mMeshes);
         std::swap(drawn->mNumMeshes, node.mNumMeshes);
-        addChild(node, *drawn);
+        node.addChildren(1, &drawn);
     }
     if (!model.shapes.empty()) _morphed[_models.at(model.uniqueName)] = drawn->mName.C_Str();
 }
@@ -442,23 +426,10 @@ aiMeshMorphAnim* FbxCompletion::weights(const fbx::Take& take, std::size_t numbe
         }
         return values;
     };
-    const auto mixed = [](const std::vector<double>& a, const std::vector<double>& b, double share)
-    {
-        std::vector<double> values(a);
-        for (std::size_t i = 0; i < values.size(); ++i)
-            values[i] += share * (b[i] - a[i]);
-        return values;
-    };
-    const auto apart = [](const std::vector<double>& a, const std::vector<double>& b)
-    {
-        double distance = 0.0;
-        for (std::size_t i = 0; i < a.size(); ++i)
-            distance = std::max(distance, std::abs(a[i] - b[i]));
-        return distance;
-    };
-    const auto max = [&](const std::vector<double>& values)
-    { return apart(values, std::vector<double>(values.size())); };
-    const auto keys = keysOf(take, std::move(times), weightsAt, mixed, apart, relativeTolerance, max);
+    const auto max = [](const std::vector<double>& values)
+    { return largestDifference(values, std::vector<double>(values.size())); };
+    const auto keys = keysOf(take, std::move(times), weightsAt, mixedNumbers<double>, largestDifference<double>,
+                             relativeTolerance, max);
     aiMeshMorphAnim* const made = new aiMeshMorphAnim;
     made->mName = _morphed.at(number) + "*0";
     made->mNumKeys = static_cast<unsigned int>(keys.size());

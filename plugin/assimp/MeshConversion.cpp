@@ -72,23 +72,15 @@ std::vector<float> tangentsOf(const aiMesh& mesh)
     return values;
 }
 
-std::vector<float> textureCoordinates(const aiMesh& mesh, unsigned int set)
-{
-    std::vector<float> values;
-    for (unsigned int i = 0; i < mesh.mNumVertices; ++i)
-        values.insert(values.end(), {mesh.mTextureCoords[set][i].x, 1.0f - mesh.mTextureCoords[set][i].y});
-    return values;
-}
-
-std::vector<float> differences(const aiVector3D* morphed, const aiVector3D* base, std::size_t count)
-{
-    std::vector<aiVector3D> deltas(morphed, morphed + count);
-    for (std::size_t i = 0; i < count; ++i)
-        deltas[i] -= base[i];
-    return components(deltas.data(), count);
-}
-
 } // namespace
+
+std::array<float, 16> columnMajor(const aiMatrix4x4& matrix)
+{
+    std::array<float, 16> numbers;
+    for (unsigned int i = 0; i < 16; ++i)
+        numbers[i] = matrix[i % 4][i / 4];
+    return numbers;
+}
 
 bool standsAlone(const aiMesh& mesh)
 {
@@ -141,7 +133,13 @@ json MeshWriter::primitive(const aiMesh& mesh)
     if (mesh.HasNormals() && mesh.HasTangentsAndBitangents())
         attributes["TANGENT"] = vertices(tangentsOf(mesh), "VEC4");
     for (unsigned int set = 0; set < mesh.GetNumUVChannels(); ++set)
-        attributes["TEXCOORD_" + std::to_string(set)] = vertices(textureCoordinates(mesh, set), "VEC2");
+    {
+        std::vector<float> coordinates;
+        for (unsigned int i = 0; i < mesh.mNumVertices; ++i)
+            coordinates.insert(coordinates.end(),
+                               {mesh.mTextureCoords[set][i].x, 1.0f - mesh.mTextureCoords[set][i].y});
+        attributes["TEXCOORD_" + std::to_string(set)] = vertices(coordinates, "VEC2");
+    }
     if (mesh.HasVertexColors(0))
     {
         std::vector<float> colors;
@@ -160,16 +158,19 @@ void MeshWriter::addTargets(const aiMesh& mesh, json& made)
     for (unsigned int i = 0; i < mesh.mNumAnimMeshes; ++i)
     {
         const aiAnimMesh& target = *mesh.mAnimMeshes[i];
-        json deltas = json::object();
+        json attributes = json::object();
         const auto add = [&](const char* name, const aiVector3D* morphed, const aiVector3D* base)
         {
             if (target.mNumVertices != mesh.mNumVertices || !morphed || !base) return;
-            deltas[name] = _writer.addFloats(finite(differences(morphed, base, mesh.mNumVertices), mesh), "VEC3",
-                                             gltf::GlbWriter::Use::Vertices);
+            std::vector<aiVector3D> deltas(morphed, morphed + mesh.mNumVertices);
+            for (std::size_t vertex = 0; vertex < deltas.size(); ++vertex)
+                deltas[vertex] -= base[vertex];
+            attributes[name] = _writer.addFloats(finite(components(deltas.data(), deltas.size()), mesh), "VEC3",
+                                                 gltf::GlbWriter::Use::Vertices);
         };
         add("POSITION", target.mVertices, mesh.mVertices);
         add("NORMAL", target.mNormals, mesh.mNormals);
-        made["targets"].push_back(std::move(deltas));
+        made["targets"].push_back(std::move(attributes));
     }
 }
 
@@ -180,9 +181,8 @@ MeshWriter::Influences MeshWriter::influences(const aiMesh& mesh, std::size_t no
     const auto addJoint = [&](std::size_t joint, const aiMatrix4x4& inverseBind)
     {
         joints.push_back(joint);
-        for (unsigned int column = 0; column < 4; ++column)
-            for (unsigned int row = 0; row < 4; ++row)
-                inverseBindMatrices.push_back(inverseBind[row][column]);
+        const std::array<float, 16> numbers = columnMajor(inverseBind);
+        inverseBindMatrices.insert(inverseBindMatrices.end(), numbers.begin(), numbers.end());
         return static_cast<std::uint16_t>(joints.size() - 1);
     };
     const std::size_t count = mesh.mNumVertices;

@@ -4,6 +4,9 @@
 #include "gltf/export/GlbWriter.h"
 #include "gltf/file/Report.h"
 
+#include <assimp/matrix4x4.h>
+
+#include <array>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -59,6 +62,9 @@ private:
     std::map<const aiMesh*, nlohmann::json> _primitives;
     std::map<std::pair<std::vector<std::size_t>, std::vector<float>>, std::size_t> _skins;
 };
+
+/// As glTF has matrices.
+std::array<float, 16> columnMajor(const aiMatrix4x4& matrix);
 
 /// True where the mesh needs a glTF mesh of its own: it has bones or morph targets.
 bool standsAlone(const aiMesh& mesh);

@@ -9,6 +9,7 @@
 #include <assimp/scene.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -163,24 +164,6 @@ void writeAnimations(const aiScene& scene, const NodeNumbers& nodes, const Morph
     }
 }
 
-json columnMajor(const aiMatrix4x4& matrix)
-{
-    json values = json::array();
-    for (unsigned int column = 0; column < 4; ++column)
-        for (unsigned int row = 0; row < 4; ++row)
-            values.push_back(matrix[row][column]);
-    return values;
-}
-
-bool isFinite(const aiMatrix4x4& matrix)
-{
-    float sum = 0.0f;
-    for (unsigned int row = 0; row < 4; ++row)
-        for (unsigned int column = 0; column < 4; ++column)
-            sum += std::abs(matrix[row][column]);
-    return std::isfinite(sum);
-}
-
 /// Turns the scene's axes to glTF's: +Y up, +Z forward. Identity where the metadata says nothing else, and where the
 /// root is turned already, as by Assimp from 5.4 on.
 aiMatrix4x4 axesToYUp(const aiScene& scene)
@@ -299,13 +282,14 @@ std::optional<Error> SceneWriter::addNodes(std::size_t maxDepth)
 json SceneWriter::transformOf(const aiNode& node)
 {
     const aiMatrix4x4& matrix = node.mTransformation;
-    if (!isFinite(matrix))
+    const std::array<float, 16> numbers = columnMajor(matrix);
+    if (!std::all_of(numbers.begin(), numbers.end(), [](float number) { return std::isfinite(number); }))
     {
         _report.warn("node " + gltf::quoted(marksOf(node).name) + ": its matrix is not finite; taken as identity");
         return json::object();
     }
     if (matrix == aiMatrix4x4()) return json::object(); // IsIdentity() would take 1 cm as nothing
-    if (_animated.count(node.mName.C_Str()) == 0) return {{"matrix", columnMajor(matrix)}};
+    if (_animated.count(node.mName.C_Str()) == 0) return {{"matrix", numbers}};
     aiVector3D scale, translation;
     aiQuaternion rotation;
     matrix.Decompose(scale, rotation, translation);

@@ -357,11 +357,6 @@ std::vector<double> Element::numbers(std::string_view childName) const
     return found ? found->numbers() : std::vector<double>();
 }
 
-bool isBinary(std::string_view bytes)
-{
-    return bytes.substr(0, magic.size()) == magic;
-}
-
 double floatOfBits(double number)
 {
     constexpr double smallestNormal = 8388608.0; // bits below are those of denormal numbers
@@ -377,7 +372,7 @@ double floatOfBits(double number)
 Result<Document> Document::parse(std::string_view bytes)
 {
     Document document;
-    if (isBinary(bytes))
+    if (bytes.substr(0, magic.size()) == magic)
     {
         if (bytes.size() < headerBytes)
             return Error{"FBX header: expected " + std::to_string(headerBytes) + " bytes, found " +

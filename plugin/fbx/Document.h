@@ -53,9 +53,6 @@ struct Document
     int version = 0; ///< 7400: FBX 7.4
 };
 
-/// True for the first bytes of a binary file.
-bool isBinary(std::string_view bytes);
-
 /// The bits of a float that ASCII files print as an integer: 1144258560 is 720. Others are the number itself.
 double floatOfBits(double number);
 

@@ -22,10 +22,16 @@ namespace
 
 constexpr double ticksPerSecond = 46186158000.0, ticksPerSecondOfVersion8 = 141120000.0;
 constexpr int originalTimeDefinition = 127;
-constexpr std::pair<std::string_view, AnimatedVector ModelTracks::*> trackNames[] = {
-    {"Lcl Translation", &ModelTracks::translation},
-    {"Lcl Rotation", &ModelTracks::rotation},
-    {"Lcl Scaling", &ModelTracks::scale}};
+/// A property that takes animate.
+struct MovingProperty
+{
+    std::string_view name;
+    AnimatedVector ModelTracks::*track;
+    glm::dvec3 Model::*rest;
+};
+constexpr MovingProperty movingProperties[] = {{"Lcl Translation", &ModelTracks::translation, &Model::translation},
+                                               {"Lcl Rotation", &ModelTracks::rotation, &Model::rotation},
+                                               {"Lcl Scaling", &ModelTracks::scale, &Model::scale}};
 constexpr std::string_view componentNames[3] = {"d|X", "d|Y", "d|Z"};
 
 /// An object of the file: `Model: 1001, "Model::door", "Mesh"`.
@@ -104,9 +110,8 @@ private:
     void addBinding(std::int64_t cluster, const Element& element, Model& model);
     void readTakes();
     void readTake(std::int64_t id, const Object& stack);
-    void readCurveNode(std::int64_t id, std::int64_t layer, Take& take, std::map<std::size_t, ModelTracks>& tracks);
+    void readCurveNode(std::int64_t id, std::int64_t layer, Take& take);
     void warnOfLost(std::int64_t curveNode, std::string_view name, const Model& model, const Take& take);
-    void setMissingRests(const Take& take);
     void addCurves(std::int64_t curveNode, std::int64_t layerId, AnimatedVector& vector);
     void setRange(const Element& stack, Take& take);
 
@@ -126,7 +131,8 @@ private:
     /// The values of a property after its name, type, label and flags.
     static const Element* property(const Element& element, std::string_view name);
     static double number(const Element& element, std::string_view name, double without);
-    static glm::dvec3 vector(const Element& element, std::string_view name, const glm::dvec3& without);
+    static glm::dvec3 vector(const Element& element, std::string_view name,
+                             const glm::dvec3& without = glm::dvec3(0.0));
     std::int64_t idOf(const Element& element) const { return element.values[0].integer; }
 
     void patch(std::string_view view, std::string_view with)
@@ -247,25 +253,25 @@ void SceneReader::readModels()
         Model model;
         model.name = each.name;
         model.uniqueName = uniqueName(each.name, taken);
-        model.translation = vector(element, "Lcl Translation", glm::dvec3(0.0));
-        model.rotation = vector(element, "Lcl Rotation", glm::dvec3(0.0));
+        model.translation = vector(element, "Lcl Translation");
+        model.rotation = vector(element, "Lcl Rotation");
         model.scale = vector(element, "Lcl Scaling", glm::dvec3(1.0));
         model.rotationOrder = static_cast<int>(std::clamp(number(element, "RotationOrder", 0.0), 0.0, 6.0));
         if (model.rotationOrder == 6)
             _scene.warnings.push_back("node " + gltf::quoted(model.name) +
                                       ": its rotation order is spheric; read as XYZ");
-        model.rotationOffset = vector(element, "RotationOffset", glm::dvec3(0.0));
-        model.rotationPivot = vector(element, "RotationPivot", glm::dvec3(0.0));
-        model.scalingOffset = vector(element, "ScalingOffset", glm::dvec3(0.0));
-        model.scalingPivot = vector(element, "ScalingPivot", glm::dvec3(0.0));
-        model.preRotation = vector(element, "PreRotation", glm::dvec3(0.0));
-        model.postRotation = vector(element, "PostRotation", glm::dvec3(0.0));
+        model.rotationOffset = vector(element, "RotationOffset");
+        model.rotationPivot = vector(element, "RotationPivot");
+        model.scalingOffset = vector(element, "ScalingOffset");
+        model.scalingPivot = vector(element, "ScalingPivot");
+        model.preRotation = vector(element, "PreRotation");
+        model.postRotation = vector(element, "PostRotation");
         constexpr double withoutParentScale = 2.0;
         model.compensatesScale = number(element, "InheritType", 1.0) == withoutParentScale;
         model.isHidden = number(element, "Visibility", 1.0) <= 0.0;
         const glm::dmat4 one(1.0);
-        model.geometric = glm::translate(one, vector(element, "GeometricTranslation", glm::dvec3(0.0))) *
-                          glm::mat4_cast(rotationOf(vector(element, "GeometricRotation", glm::dvec3(0.0)), 0)) *
+        model.geometric = glm::translate(one, vector(element, "GeometricTranslation")) *
+                          glm::mat4_cast(rotationOf(vector(element, "GeometricRotation"), 0)) *
                           glm::scale(one, vector(element, "GeometricScaling", glm::dvec3(1.0)));
         _models.emplace(id, _scene.models.size());
         _modelIds.push_back(id);
@@ -366,7 +372,6 @@ void SceneReader::readTake(std::int64_t id, const Object& stack)
 {
     Take take;
     take.name = stack.name;
-    std::map<std::size_t, ModelTracks> tracks;
     for (const Connection& layer : sources(id))
     {
         const Object* const found = object(layer.other);
@@ -377,17 +382,19 @@ void SceneReader::readTake(std::int64_t id, const Object& stack)
                                           ": it animates the weight of a layer, which stays as it is at rest: merge "
                                           "the layers when you export");
             else if (const Object* const curves = object(node.other); curves && curves->kind == "AnimationCurveNode")
-                readCurveNode(node.other, layer.other, take, tracks);
+                readCurveNode(node.other, layer.other, take);
     }
-    for (auto& [model, each] : tracks)
-        take.models.push_back(std::move(each));
     setRange(*stack.element, take);
-    setMissingRests(take);
+    // A property that the model lacks rests where its first take begins, as Maya's export of game animations means it.
+    for (const auto& [model, tracks] : take.models)
+        for (const MovingProperty& each : movingProperties)
+            if (!(tracks.*each.track).layers.empty() && !property(*object(_modelIds[model])->element, each.name) &&
+                _withoutRest.emplace(model, each.name).second)
+                _scene.models[model].*each.rest = (tracks.*each.track).at(take.begin);
     _scene.takes.push_back(std::move(take));
 }
 
-void SceneReader::readCurveNode(std::int64_t id, std::int64_t layer, Take& take,
-                                std::map<std::size_t, ModelTracks>& tracks)
+void SceneReader::readCurveNode(std::int64_t id, std::int64_t layer, Take& take)
 {
     for (const Connection& target : destinations(id))
     {
@@ -402,16 +409,15 @@ void SceneReader::readCurveNode(std::int64_t id, std::int64_t layer, Take& take,
         const auto found = _models.find(target.other);
         if (found == _models.end()) continue;
         const Model& model = _scene.models[found->second];
-        const auto part = std::find_if(std::begin(trackNames), std::end(trackNames),
-                                       [&](const auto& each) { return each.first == target.property; });
-        if (part == std::end(trackNames))
+        const auto part = std::find_if(std::begin(movingProperties), std::end(movingProperties),
+                                       [&](const MovingProperty& each) { return each.name == target.property; });
+        if (part == std::end(movingProperties))
         {
             warnOfLost(id, target.property, model, take);
             continue;
         }
-        const ModelTracks atRest{
-            found->second, {model.translation, false, {}}, {model.rotation, false, {}}, {model.scale, true, {}}};
-        addCurves(id, layer, tracks.emplace(found->second, atRest).first->second.*part->second);
+        const ModelTracks atRest{{model.translation, false, {}}, {model.rotation, false, {}}, {model.scale, true, {}}};
+        addCurves(id, layer, take.models.emplace(found->second, atRest).first->second.*part->track);
     }
 }
 
@@ -434,24 +440,6 @@ void SceneReader::warnOfLost(std::int64_t curveNode, std::string_view name, cons
     if (isStill) return;
     _scene.warnings.push_back("take " + gltf::quoted(take.name) + ": it animates " + std::string(name) + " of node " +
                               gltf::quoted(model.name) + ", which no clip can: it stays as it is at rest");
-}
-
-/// A property that the model lacks rests where its first take begins, as Maya's export of game animations means it.
-void SceneReader::setMissingRests(const Take& take)
-{
-    for (const ModelTracks& tracks : take.models)
-    {
-        Model& model = _scene.models[tracks.model];
-        const auto set = [&](std::string_view name, const AnimatedVector& animated, glm::dvec3& rest)
-        {
-            if (!animated.layers.empty() && !property(*object(_modelIds[tracks.model])->element, name) &&
-                _withoutRest.emplace(tracks.model, name).second)
-                rest = animated.at(take.begin);
-        };
-        set("Lcl Translation", tracks.translation, model.translation);
-        set("Lcl Rotation", tracks.rotation, model.rotation);
-        set("Lcl Scaling", tracks.scale, model.scale);
-    }
 }
 
 void SceneReader::addCurves(std::int64_t curveNode, std::int64_t layerId, AnimatedVector& vector)
@@ -483,12 +471,9 @@ void SceneReader::setRange(const Element& stack, Take& take)
     take.end = number(stack, "LocalStop", 0.0) / _ticksPerSecond;
     if (take.end > take.begin) return;
     std::vector<double> times;
-    for (const ModelTracks& each : take.models)
-    {
-        each.translation.appendTimes(times);
-        each.rotation.appendTimes(times);
-        each.scale.appendTimes(times);
-    }
+    for (const auto& [model, tracks] : take.models)
+        for (const MovingProperty& each : movingProperties)
+            (tracks.*each.track).appendTimes(times);
     for (const ShapeTrack& each : take.shapes)
         each.percent.appendTimes(times);
     const auto [first, last] = std::minmax_element(times.begin(), times.end());

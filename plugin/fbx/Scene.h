@@ -5,6 +5,7 @@
 #include "fbx/Model.h"
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,6 @@ namespace osgGpuAnimation::fbx
 
 struct ModelTracks
 {
-    std::size_t model;
     AnimatedVector translation, rotation, scale;
 };
 
@@ -27,8 +27,8 @@ struct ShapeTrack
 struct Take
 {
     std::string name;
-    double begin = 0.0, end = 0.0;   ///< seconds of the file
-    std::vector<ModelTracks> models; ///< ascending
+    double begin = 0.0, end = 0.0;             ///< seconds of the file
+    std::map<std::size_t, ModelTracks> models; ///< by the number of the model
     std::vector<ShapeTrack> shapes;
 };
 

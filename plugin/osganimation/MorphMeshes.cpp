@@ -77,20 +77,10 @@ Channel MorphMotion::channel(int target)
     made.path = Channel::Path::Weights;
     made.target = target;
     const auto function = [this](double time, bool before) { return at(before ? justBefore(time) : time); };
-    const auto between = [](std::vector<float> from, const std::vector<float>& to, double share)
-    {
-        for (std::size_t i = 0; i < from.size(); ++i)
-            from[i] += static_cast<float>(share) * (to[i] - from[i]);
-        return from;
-    };
     const auto inTolerances = [](const std::vector<float>& a, const std::vector<float>& b)
-    {
-        double max = 0.0;
-        for (std::size_t i = 0; i < a.size(); ++i)
-            max = std::max(max, static_cast<double>(std::abs(a[i] - b[i])));
-        return max / tolerance;
-    };
-    for (const auto& [time, weights] : sampledTrack(keyTimesOf(_channels), function, between, inTolerances, minJump))
+    { return largestDifference(a, b) / tolerance; };
+    for (const auto& [time, weights] :
+         sampledTrack(keyTimesOf(_channels), function, mixedNumbers<float>, inTolerances, minJump))
     {
         made.times.push_back(time);
         made.values.insert(made.values.end(), weights.begin(), weights.end());

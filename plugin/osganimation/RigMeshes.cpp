@@ -225,14 +225,6 @@ bool copyArrays(const osg::Geometry& from, SkinnedGeometry& mesh)
     return mesh.getNumPrimitiveSets() == from.getNumPrimitiveSets();
 }
 
-/// The character's program multiplies the vertices' colours and the material, of which the fixed pipeline takes one.
-void setColors(const osg::Geometry& from, const osg::StateSet& state, SkinnedGeometry& mesh)
-{
-    const auto& material = static_cast<const osg::Material&>(*state.getAttribute(osg::StateAttribute::MATERIAL));
-    if (material.getColorMode() != osg::Material::OFF)
-        mesh.setColorArray(const_cast<osg::Array*>(from.getColorArray()));
-}
-
 } // namespace
 
 std::vector<RigMesh> findMeshes(osgAnimation::Skeleton& skeleton, const std::vector<BoneJoint>& bones,
@@ -276,7 +268,10 @@ osg::ref_ptr<SkinnedGeometry> skinnedMesh(const RigMesh& mesh, const AnimationSe
         state->merge(*source.getStateSet());
     // Without a material, the fixed pipeline has GL's, the program white.
     if (!state->getAttribute(osg::StateAttribute::MATERIAL)) state->setAttribute(new osg::Material);
-    setColors(source, *state, *made);
+    // The character's program multiplies the vertices' colours and the material, of which the fixed pipeline takes one.
+    const auto& material = static_cast<const osg::Material&>(*state->getAttribute(osg::StateAttribute::MATERIAL));
+    if (material.getColorMode() != osg::Material::OFF)
+        made->setColorArray(const_cast<osg::Array*>(source.getColorArray()));
     applyCharacterProgram(*state);
     applySkinDefines(*state, made->getInfluenceCount(), morph >= 0);
     made->setStateSet(state);

@@ -288,16 +288,6 @@ osg::ref_ptr<AnimatedCharacter> SkeletonConverter::character(const std::vector<M
     return made;
 }
 
-/// The names that a manager's channels have as targets, but no clip has.
-std::set<std::string> targetsLeft(const osgAnimation::AnimationManagerBase& manager, const std::set<std::string>& taken)
-{
-    std::set<std::string> left;
-    for (const osg::ref_ptr<osgAnimation::Animation>& animation : manager.getAnimationList())
-        for (const osg::ref_ptr<osgAnimation::Channel>& channel : animation->getChannels())
-            if (taken.count(channel->getTargetName()) == 0) left.insert(channel->getTargetName());
-    return left;
-}
-
 } // namespace
 
 Conversion convertOsgAnimation(osg::Node& node)
@@ -325,16 +315,14 @@ Conversion convertOsgAnimation(osg::Node& node)
         result.warnings.push_back("MorphGeometry that no bone carries stays as it is");
     for (const Manager& each : scene.managers)
     {
-        const std::set<std::string> left = targetsLeft(*each.manager, taken);
-        if (left.empty() || result.characters.empty())
-        {
-            if (left.empty()) each.owner->removeUpdateCallback(each.manager);
-            continue;
-        }
-        std::string names;
-        for (const std::string& name : left)
-            names += (names.empty() ? "\"" : ", \"") + name + "\"";
-        result.warnings.push_back("the animation manager stays, for channels that move no bone: " + names);
+        std::set<std::string> left; // targets of channels that no clip has
+        for (const osg::ref_ptr<osgAnimation::Animation>& animation : each.manager->getAnimationList())
+            for (const osg::ref_ptr<osgAnimation::Channel>& channel : animation->getChannels())
+                if (taken.count(channel->getTargetName()) == 0) left.insert(channel->getTargetName());
+        if (left.empty()) each.owner->removeUpdateCallback(each.manager);
+        if (left.empty() || result.characters.empty()) continue;
+        result.warnings.push_back("the animation manager stays, for channels that move no bone: " +
+                                  quotedNames(std::vector<std::string>(left.begin(), left.end())));
     }
     return result;
 }

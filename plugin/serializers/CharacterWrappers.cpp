@@ -73,13 +73,6 @@ void transferSpring(ValueStream& stream, SpringJoint& joint)
     stream.endLine();
 }
 
-void transferChain(ValueStream& stream, SpringChain& chain)
-{
-    stream.list("SpringJoints", chain.joints, [&](SpringJoint& joint) { transferSpring(stream, joint); });
-    stream.list("HitColliders", chain.colliders,
-                [&](std::size_t& collider) { stream.property("Collider").value(collider).endLine(); });
-}
-
 void transferCollider(ValueStream& stream, SpringCollider& collider)
 {
     bool isCapsule = collider.tail.has_value();
@@ -100,7 +93,13 @@ void transferChains(ValueStream& stream, SpringBones& springs)
     double maxDistance = springs.getMaxDistance();
     stream.begin();
     transferDistance(stream.property("Layer").value(layer), maxDistance);
-    stream.list("SpringChains", chains, [&](SpringChain& chain) { transferChain(stream, chain); });
+    const auto transferChain = [&](SpringChain& chain)
+    {
+        stream.list("SpringJoints", chain.joints, [&](SpringJoint& joint) { transferSpring(stream, joint); });
+        stream.list("HitColliders", chain.colliders,
+                    [&](std::size_t& collider) { stream.property("Collider").value(collider).endLine(); });
+    };
+    stream.list("SpringChains", chains, transferChain);
     stream.list("SpringColliders", colliders, [&](SpringCollider& collider) { transferCollider(stream, collider); });
     stream.close();
     if (!stream.hasRead()) return;
@@ -131,17 +130,16 @@ void transferSettings(ValueStream& stream, AnimatedCharacter& character)
     stream.require("a character: ", character.getMeshes().setPixelError(static_cast<float>(pixelError)));
 }
 
-void transferState(ValueStream& stream, AnimatedCharacter& character)
-{
-    transferController(stream, character.getController());
-    if (stream.hasRead()) character.dirtyBound();
-}
-
 void addCharacterProperties(osgDB::ObjectWrapper* wrapper)
 {
     addProperty(wrapper, "AnimationSet", &transferCharacterSet);
     addProperty(wrapper, "Settings", &transferSettings);
-    addProperty(wrapper, "Controller", &transferState);
+    addProperty<AnimatedCharacter>(wrapper, "Controller",
+                                   [](ValueStream& stream, AnimatedCharacter& character)
+                                   {
+                                       transferController(stream, character.getController());
+                                       if (stream.hasRead()) character.dirtyBound();
+                                   });
 }
 
 /// The index of the attachment's instance in the crowd above it: its handle when the crowd is read. Empty: none.

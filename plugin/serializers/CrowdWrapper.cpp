@@ -35,14 +35,6 @@ void transferMap(ValueStream& stream, const char* name, const std::map<std::stri
         if (stream.hasRead()) set(key, value);
 }
 
-void transferProp(ValueStream& stream, Outfit::Prop& prop)
-{
-    stream.property("Prop").value(prop.joint);
-    transferMatrix(stream, prop.toJoint);
-    stream.endLine();
-    stream.object(prop.node);
-}
-
 void transferOutfit(ValueStream& stream, Outfit& outfit)
 {
     std::string variant = outfit.getVariant();
@@ -63,7 +55,14 @@ void transferOutfit(ValueStream& stream, Outfit& outfit)
         stream, "JointScales", outfit.getJointScales(), [&](osg::Vec3& scale) { stream.floats(scale.ptr(), 3); },
         [&](const std::string& joint, const osg::Vec3& scale) { outfit.setJointScale(joint, scale); });
     std::vector<Outfit::Prop> props = outfit.getProps();
-    stream.list("Props", props, [&](Outfit::Prop& prop) { transferProp(stream, prop); });
+    stream.list("Props", props,
+                [&](Outfit::Prop& prop)
+                {
+                    stream.property("Prop").value(prop.joint);
+                    transferMatrix(stream, prop.toJoint);
+                    stream.endLine();
+                    stream.object(prop.node);
+                });
     for (const Outfit::Prop& prop : props)
         if (stream.hasRead()) outfit.addProp(prop.joint, prop.node, prop.toJoint);
     stream.close();
@@ -90,12 +89,6 @@ enum class Playback
     Controller, ///< all layers
 };
 
-Playback playbackOf(const AnimationController& controller)
-{
-    if (!ControllerDetail::isPlainLoop(controller)) return Playback::Controller;
-    return controller.clip() < 0 ? Playback::Nothing : Playback::Plain;
-}
-
 void transferPlain(ValueStream& stream, AnimationController& controller)
 {
     std::int32_t clip = controller.clip();
@@ -121,7 +114,8 @@ struct StoredInstance
 void transferInstance(ValueStream& stream, StoredInstance& instance, std::size_t outfits)
 {
     auto tint = static_cast<std::int32_t>(instance.tint);
-    Playback playback = playbackOf(instance.controller);
+    Playback playback = instance.controller.clip() < 0 ? Playback::Nothing : Playback::Plain;
+    if (!ControllerDetail::isPlainLoop(instance.controller)) playback = Playback::Controller;
     stream.property("Instance").values(instance.root, tint);
     stream.limited("the outfit of an instance", instance.outfit, 0, static_cast<std::int32_t>(outfits));
     stream.limited("an instance's playback", playback, Playback::Controller);

@@ -6,6 +6,7 @@
 #include <osgGpuAnimation/looks/shading/ShaderPermutations.h>
 #include <osgGpuAnimation/mesh/detail/MeshDetail.h>
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
+#include <osgGpuAnimation/mesh/geometry/PrimitiveRange.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 
@@ -68,19 +69,6 @@ void waitForLevels(const osg::Node& mesh)
     }
 }
 
-bool hasLevels(const SkinnedGeometry& mesh)
-{
-    waitForLevels(mesh);
-    return MeshDetail::findLevels(mesh) != nullptr;
-}
-
-void transferLevels(ValueStream& stream, SkinnedGeometry& mesh)
-{
-    stream.begin();
-    transferLodLevels(stream, mesh);
-    stream.close();
-}
-
 /// As the glTF reader does for the core profile; a texture does not store it.
 struct MipmapsAfterReading : osgDB::FinishedObjectReadCallback
 {
@@ -95,7 +83,12 @@ void addMeshProperties(osgDB::ObjectWrapper* wrapper)
     addProperty(wrapper, "Influences", &transferInfluences);
     addProperty<SkinnedGeometry>(wrapper, "MorphTargets", &transferMorphTargets,
                                  [](const SkinnedGeometry& mesh) { return !mesh.getMorphTargets().empty(); });
-    addProperty<SkinnedGeometry>(wrapper, "LodLevels", &transferLevels, &hasLevels);
+    const auto hasLevels = [](const SkinnedGeometry& mesh)
+    {
+        waitForLevels(mesh);
+        return MeshDetail::findLevels(mesh) != nullptr;
+    };
+    addProperty<SkinnedGeometry>(wrapper, "LodLevels", &transferLodLevels, hasLevels);
     wrapper->addFinishedObjectReadCallback(new MipmapsAfterReading);
 }
 
@@ -128,21 +121,6 @@ Fault findFaultInArrays(const SkinnedGeometry& mesh, std::size_t vertices)
     for (const osg::ref_ptr<osg::Array>& array : arrays)
         if (array->getBinding() == osg::Array::BIND_PER_VERTEX && array->getNumElements() < vertices)
             return counted(array->getNumElements(), "elements of an array", vertices);
-    return std::nullopt;
-}
-
-Fault findFaultInPrimitives(const SkinnedGeometry& mesh, std::size_t vertices)
-{
-    for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : mesh.getPrimitiveSetList())
-    {
-        if (!primitives) return "a missing primitive set";
-        if (const auto* range = dynamic_cast<const osg::DrawArrays*>(primitives.get()))
-            if (range->getFirst() < 0 || range->getCount() < 0) return "a range of vertices below 0";
-        const unsigned int count = primitives->getNumIndices();
-        const bool ascends = primitives->getType() == osg::PrimitiveSet::DrawArraysPrimitiveType;
-        for (unsigned int i = ascends && count > 0 ? count - 1 : 0; i < count; ++i)
-            if (primitives->index(i) >= vertices) return counted(primitives->index(i), "as a vertex", vertices);
-    }
     return std::nullopt;
 }
 
@@ -179,7 +157,8 @@ std::optional<std::string> findFault(const SkinnedGeometry& mesh, const Animatio
     if (!positions) return "no vertices";
     const std::size_t vertices = positions->getNumElements();
     if (const Fault fault = findFaultInArrays(mesh, vertices)) return fault;
-    if (const Fault fault = findFaultInPrimitives(mesh, vertices)) return fault;
+    for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : mesh.getPrimitiveSetList())
+        if (!isWithin(primitives, vertices)) return "a primitive set that is missing or beyond its vertices";
     if (const Fault fault = findFaultInEntries(mesh, set.paletteSize())) return fault;
     return findFaultInMorphs(mesh, set);
 }

@@ -18,11 +18,6 @@ namespace osgGpuAnimation
 namespace
 {
 
-bool isOwn(const osg::Node& node)
-{
-    return dynamic_cast<const AnimatedCharacter*>(&node) || dynamic_cast<const AnimatedCrowd*>(&node);
-}
-
 class SeparateLoads : public osgDB::ReadFileCallback
 {
 public:
@@ -40,6 +35,8 @@ public:
 private:
     static Result separated(Result read, const osgDB::Options* options, int hint)
     {
+        const auto isOwn = [](const osg::Node& each)
+        { return dynamic_cast<const AnimatedCharacter*>(&each) || dynamic_cast<const AnimatedCrowd*>(&each); };
         osg::Node* const node = read.getNode();
         if (!node || !options || (options->getObjectCacheHint() & hint) == 0 || !visitUntil(*node, isOwn)) return read;
         return Result(osg::clone(node, osg::CopyOp::DEEP_COPY_NODES), read.status());

@@ -51,14 +51,6 @@ void transferSkins(ValueStream& stream, const char* name, std::vector<Skin>& ski
     stream.list(name, skins, transferSkin);
 }
 
-void transferRigidJoints(ValueStream& stream, std::vector<int>& joints)
-{
-    std::size_t count = joints.size();
-    stream.property("RigidJoints").value(count);
-    stream.items(joints, count, [&](int& joint) { stream.value(joint); });
-    stream.endLine();
-}
-
 void transferMorphs(ValueStream& stream, std::vector<MorphWeights>& morphs)
 {
     stream.list("Morphs", morphs,
@@ -215,7 +207,10 @@ void StoredAnimationSet::transferContents(ValueStream& stream, StoredAnimationSe
     stream.version("an animation set").endLine();
     transferJoints(stream, joints);
     transferSkins(stream, "Skins", skins);
-    transferRigidJoints(stream, rigidJoints);
+    std::size_t count = rigidJoints.size();
+    stream.property("RigidJoints").value(count);
+    stream.items(rigidJoints, count, [&](int& joint) { stream.value(joint); });
+    stream.endLine();
     transferMorphs(stream, morphs);
     transferClips(stream, joints.size(), morphs, clips);
     transferConstraints(stream, constraints);
@@ -267,14 +262,6 @@ void transferSpace(ValueStream& stream, const AnimationSet& set, LayerSnapshot::
         OSG_WARN << "osgGpuAnimation: a stored layer: " << made.error().message << std::endl;
 }
 
-void transferBlends(ValueStream& stream, const AnimationSet& set, LayerSnapshot& layer)
-{
-    stream.property("Parameter")
-        .values(layer.settings.parameter.x, layer.settings.parameter.y, layer.settings.isPhaseShared)
-        .endLine();
-    stream.list("Spaces", layer.spaces, [&](LayerSnapshot::ActiveSpace& space) { transferSpace(stream, set, space); });
-}
-
 void transferPosedTrack(ValueStream& stream, JointPose::Track& track)
 {
     auto index = static_cast<std::int32_t>(track.track), numbers = static_cast<std::int32_t>(track.numbers);
@@ -283,12 +270,6 @@ void transferPosedTrack(ValueStream& stream, JointPose::Track& track)
     stream.floats(&track.values.scale.x, 4).endLine();
     track.track = static_cast<std::uint32_t>(index);
     track.numbers = static_cast<std::uint32_t>(numbers);
-}
-
-void transferPose(ValueStream& stream, LayerSnapshot& layer)
-{
-    stream.list("Pose", layer.pose, [&](JointPose::Track& track) { transferPosedTrack(stream, track); });
-    transferFade(stream, "PoseShare", layer.poseShare);
 }
 
 void transferLayer(ValueStream& stream, const AnimationSet& set, LayerSnapshot& layer)
@@ -305,8 +286,12 @@ void transferLayer(ValueStream& stream, const AnimationSet& set, LayerSnapshot& 
     transferFade(stream, "Crossfade", layer.crossfade);
     transferFade(stream, "Weight", layer.weight);
     stream.block("Mask", layer.mask, 8);
-    transferBlends(stream, set, layer);
-    transferPose(stream, layer);
+    stream.property("Parameter")
+        .values(layer.settings.parameter.x, layer.settings.parameter.y, layer.settings.isPhaseShared)
+        .endLine();
+    stream.list("Spaces", layer.spaces, [&](LayerSnapshot::ActiveSpace& space) { transferSpace(stream, set, space); });
+    stream.list("Pose", layer.pose, [&](JointPose::Track& track) { transferPosedTrack(stream, track); });
+    transferFade(stream, "PoseShare", layer.poseShare);
 }
 
 const Wrapper<StoredAnimationSet> storedSet("StoredAnimationSet", "", "Contents",

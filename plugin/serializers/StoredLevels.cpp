@@ -104,10 +104,12 @@ void transferLodLevels(ValueStream& stream, SkinnedGeometry& mesh)
     if (!stream.isReading())
         for (unsigned int i = 0; i < mesh.getNumPrimitiveSets(); ++i)
             levels.push_back(MeshDetail::findLevels(mesh)->steps(i));
+    stream.begin();
     stream.property("Checksum").value(sum).endLine();
     stream.list("Levels", levels,
                 [&](LodLevels::Steps& steps)
                 { stream.list("Steps", steps, [&](LodLevels::Step& step) { transferStep(stream, step); }); });
+    stream.close();
     if (!stream.hasRead()) return;
     if (sum != static_cast<std::int32_t>(checksum))
         return warn(mesh, "mesh", "its vertices or primitives have changed");

@@ -30,12 +30,6 @@ enum class Source
     Faces,    ///< the cube map follows
 };
 
-Source sourceOf(const Environment& environment)
-{
-    if (environment.getPanorama()) return Source::Panorama;
-    return environment.getFaces() ? Source::Faces : Source::Studio;
-}
-
 void report(const char* consequence, const Result<void>& taken)
 {
     if (!taken) OSG_WARN << "osgGpuAnimation: " << consequence << ": " << taken.error().message << std::endl;
@@ -51,7 +45,9 @@ void transferSurroundings(ValueStream& stream, Environment& environment)
     double intensity = static_cast<double>(environment.getIntensity());
     double rotation = static_cast<double>(environment.getRotation());
     bool isToneMapped = environment.getToneMapping();
-    Source source = sourceOf(environment);
+    Source source = environment.getPanorama() ? Source::Panorama
+                    : environment.getFaces()  ? Source::Faces
+                                              : Source::Studio;
     stream.values(intensity, rotation, isToneMapped);
     stream.limited("the source of surroundings", source, Source::Faces).endLine();
     constexpr double max = std::numeric_limits<float>::max();

@@ -81,9 +81,16 @@ Result<void> addClips(osg::Node& scene, const std::string& file, const gltf::Imp
     return {};
 }
 
-/// A scene stays what it is: readModel() would export it to glTF.
-Result<Scene> readWithClips(const std::string& file, const gltf::ImportOptions& options)
+Result<Scene> read(const std::string& file, const gltf::ImportOptions& options)
 {
+    if (isModelFormat(file))
+    {
+        const Result<gltf::ImportedModel> model = readModel(file, options);
+        if (!model) return model.error();
+        printWarnings(file, model.value().messages);
+        return Scene(model.value().root);
+    }
+    // A scene stays what it is: readModel() would export it to glTF.
     gltf::Messages messages;
     gltf::Report report(messages);
     const Result<Scene> scene = readScene(file, report);
@@ -91,15 +98,6 @@ Result<Scene> readWithClips(const std::string& file, const gltf::ImportOptions& 
     const Result<void> added = addClips(*scene.value(), file, options, messages);
     printWarnings(file, messages, added ? "" : added.error().message);
     return added ? scene : Result<Scene>(added.error());
-}
-
-Result<Scene> read(const std::string& file, const gltf::ImportOptions& options)
-{
-    if (!isModelFormat(file)) return readWithClips(file, options);
-    const Result<gltf::ImportedModel> model = readModel(file, options);
-    if (!model) return model.error();
-    printWarnings(file, model.value().messages);
-    return Scene(model.value().root);
 }
 
 Result<std::string> glbOf(const osg::Node& scene, const std::string& file)

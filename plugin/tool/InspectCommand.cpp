@@ -194,12 +194,6 @@ ordered_json reportMaterials(const gltf::ImportedModel& model)
     return materials;
 }
 
-const char* kindName(PunctualLight::Kind kind)
-{
-    if (kind == PunctualLight::Kind::Directional) return "directional";
-    return kind == PunctualLight::Kind::Spot ? "spot" : "point";
-}
-
 /// number: OpenGL's, null for a light that is left out.
 ordered_json reportLights(const gltf::ImportedModel& model)
 {
@@ -212,7 +206,9 @@ ordered_json reportLights(const gltf::ImportedModel& model)
             const auto& made = dynamic_cast<const PunctualLight&>(*light.source->getLight());
             report["number"] = made.getLightNum();
             report["name"] = made.getName();
-            report["type"] = kindName(made.getKind());
+            report["type"] = made.getKind() == PunctualLight::Kind::Directional ? "directional"
+                             : made.getKind() == PunctualLight::Kind::Spot      ? "spot"
+                                                                                : "point";
         }
         lights.push_back(std::move(report));
     }

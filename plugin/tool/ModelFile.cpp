@@ -45,12 +45,6 @@ bool isSceneFormat(const std::string& fileName)
            osgDB::Registry::instance()->getReaderWriterForExtension(extension);
 }
 
-/// By name: the tool does not link osgAnimation.
-bool isSkeleton(const osg::Node& node)
-{
-    return std::string(node.libraryName()) == "osgAnimation" && std::string(node.className()) == "Skeleton";
-}
-
 /// The file as glTF; of another format where Assimp or OSG reads it.
 Result<std::string> readGltf(const std::string& fileName, const gltf::ImportOptions& options, gltf::Messages& messages)
 {
@@ -181,6 +175,8 @@ Result<osg::ref_ptr<osg::Node>> readScene(const std::string& fileName, gltf::Rep
     if (!scene)
         return Error{"OSG cannot read it" + (read.message().empty() ? "" : ": " + read.message()) +
                      missingSerializers(fileName)};
+    const auto isSkeleton = [](const osg::Node& node) // by name: the tool does not link osgAnimation
+    { return std::string(node.libraryName()) == "osgAnimation" && std::string(node.className()) == "Skeleton"; };
     if (visitUntil(*scene, isSkeleton) && osgDB::getLowerCaseFileExtension(fileName) != "gpuanim")
         report.warn("its characters of osgAnimation keep their pose; " + osgDB::getSimpleFileName(fileName) +
                     ".gpuanim has their clips");

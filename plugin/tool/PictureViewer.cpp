@@ -58,12 +58,6 @@ osg::ref_ptr<osg::Node> makeBackground()
     return projection;
 }
 
-/// The radiance of the white surrounding, without the studio.
-float surroundingOf(Look look)
-{
-    return look == Look::Sun ? 0.3f : look == Look::File ? 0.05f : 1.0f;
-}
-
 osg::ref_ptr<osg::LightSource> makeSun()
 {
     osg::ref_ptr<osg::LightSource> sun = new osg::LightSource;
@@ -81,7 +75,7 @@ osg::ref_ptr<osg::Group> lit(osg::Node* scene, Look look, Environment* surroundi
     osg::ref_ptr<osg::Group> group = look == Look::Studio ? surroundings : new osg::Group;
     if (look != Look::Studio)
     {
-        const float radiance = surroundingOf(look);
+        const float radiance = look == Look::Sun ? 0.3f : look == Look::File ? 0.05f : 1.0f;
         osg::ref_ptr<osg::LightModel> ambient = new osg::LightModel;
         ambient->setAmbientIntensity(osg::Vec4(radiance, radiance, radiance, 1.0f));
         group->getOrCreateStateSet()->setAttribute(ambient);

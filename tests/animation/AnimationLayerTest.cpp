@@ -12,6 +12,7 @@
 #include "support/ClipSets.h"
 #include "support/GaitSet.h"
 #include "support/PaletteDifference.h"
+#include "support/RandomSet.h"
 #include "support/Results.h"
 
 #include <layout.glsl>
@@ -603,29 +604,31 @@ TEST(JointMaskTest, equalMasksAreStoredOnceInTheSet)
 {
     const auto set = makeMaskedSet();
     const JointMask arm = JointMask::subtree(*set, "arm").value();
-    EXPECT_EQ(set->addMask(arm.weights()).value(), 1u);
-    EXPECT_EQ(set->addMask(arm.inverted().weights()).value(), 2u);
-    EXPECT_EQ(set->addMask(JointMask::joints(*set, {"arm", "hand"}).value().weights()).value(), 1u);
-    EXPECT_EQ(set->masks().count(), 2u);
-    EXPECT_EQ(set->masks().weights(0), nullptr);
-    EXPECT_EQ(set->masks().weights(3), nullptr);
-    EXPECT_EQ(set->masks().weights(1)[3], 1.0f);
+    const auto used = set->useMask(arm.weights()).value(), other = set->useMask(arm.inverted().weights()).value();
+    EXPECT_EQ(used->number, 1u);
+    EXPECT_EQ(other->number, 2u);
+    EXPECT_EQ(set->useMask(JointMask::joints(*set, {"arm", "hand"}).value().weights()).value(), used);
+    EXPECT_EQ(maskCount(*set), 2u);
+    EXPECT_EQ(set->masks().find(0), nullptr);
+    EXPECT_EQ(set->masks().find(3), nullptr);
+    EXPECT_EQ(set->masks().find(1)->weights[3], 1.0f);
 }
 
 TEST(JointMaskTest, theSetRefusesMasksOfOthersAndTooMany)
 {
     const auto set = makeMaskedSet();
     const auto other = setOf(oneJoint());
-    EXPECT_EQ(errorOf(set->addMask(JointMask(*other).weights())), "a mask of 1 tracks for a set of 9");
+    EXPECT_EQ(errorOf(set->useMask(JointMask(*other).weights())), "a mask of 1 tracks for a set of 9");
 
     JointMask mask(*set);
+    std::vector<std::shared_ptr<const SetMask>> used;
     for (std::size_t i = 0; i < MaskTable::maxMasks; ++i)
     {
         mask.setJoint(0, static_cast<float>(i) / static_cast<float>(MaskTable::maxMasks));
-        EXPECT_TRUE(set->addMask(mask.weights()));
+        used.push_back(set->useMask(mask.weights()).value());
     }
     mask.setJoint(1, 1.0f);
-    EXPECT_EQ(errorOf(set->addMask(mask.weights())),
+    EXPECT_EQ(errorOf(set->useMask(mask.weights())),
               "the set has " + std::to_string(MaskTable::maxMasks) + " masks already");
 }
 
@@ -641,13 +644,13 @@ TEST(JointMaskTest, masksLiveAsLongAsTheirUsers)
             mask.setJoint(0, static_cast<float>(c * maxLayers + layer) / 1000.0f);
             ASSERT_TRUE(controllers[c].layer(layer).setMask(mask));
         }
-    EXPECT_EQ(set->masks().count(), 100 * maxLayers);
+    EXPECT_EQ(maskCount(*set), 100 * maxLayers);
     const AnimationController copy = controllers[7];
     const LayerSnapshot snapshot = LayerSnapshot::of(controllers[8].layer(3));
     controllers.clear();
-    EXPECT_EQ(set->masks().count(), maxLayers);
+    EXPECT_EQ(maskCount(*set), maxLayers);
     for (std::size_t layer = 0; layer < maxLayers; ++layer)
-        EXPECT_EQ(set->masks().weights(ControllerDetail::maskNumber(copy.layer(layer)))[0],
+        EXPECT_EQ(set->masks().find(ControllerDetail::maskNumber(copy.layer(layer)))->weights[0],
                   static_cast<float>(56 + layer) / 1000.0f);
     AnimationController restored(set->withClips(set->clips()).value());
     ASSERT_TRUE(snapshot.restoreTo(restored.layer(3)));

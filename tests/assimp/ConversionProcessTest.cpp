@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "assimp/ConversionProcess.h"
 #include "assimp/AssimpFile.h"
-#include "assimp/ConversionOutput.h"
 #include "assimp/SmallFbx.h"
 #include "support/Results.h"
 #include "support/ScratchFolder.h"

@@ -154,7 +154,7 @@ TEST_F(MasksGLTest, aNumberThatIsUsedAgainIsANewPose)
     for (int change = 0; change < 100000; ++change)
         setSpine(static_cast<float>(change % 997) / 997.0f);
     expectPose(*batchNow(), twinNow());
-    EXPECT_LE(set->masks().count(), 3u);
+    EXPECT_LE(maskCount(*set), 3u);
 }
 
 TEST_F(MasksGLTest, aMaskCountsAfterABatchWithoutOne)
@@ -176,11 +176,11 @@ TEST_F(MasksGLTest, framesThatAreStillDrawnKeepTheirMasks)
         twins.push_back(twinNow());
     }
     controller.layer(1).clearMask();
-    EXPECT_EQ(set->masks().count(), 5u);
+    EXPECT_EQ(maskCount(*set), 5u);
     for (std::size_t frame = 5; frame-- > 0;)
         expectPose(*frames[frame], twins[frame]);
     frames.clear();
-    EXPECT_EQ(set->masks().count(), 0u);
+    EXPECT_EQ(maskCount(*set), 0u);
 }
 
 TEST_F(MasksGLTest, anInstructionWhoseMaskIsGoneHasNoMask)

@@ -196,7 +196,7 @@ const FaultCase mergedFaults[] = {
     {"a level that overflows", "(Parts [^]*?Step )-?[0-9]+", "$1 77777", "merged parts 0: level 77777"},
     {"another object as the mesh", "(Parts [^]*?)osgGpuAnimation::SkinnedGeometry \\{", "$1osg::Geometry {", "no mesh"},
     {"an entry out of range", "(Parts [^]*?Vec4usArray [^]*?vector .*\n *)[0-9]+", "$1 500", "500 as an entry"},
-    {"a vertex out of range", "(Parts [^]*?DrawElementsUShort [^]*?vector .*\n *)[0-9]+", "$1 999", "999 as a vertex"},
+    {"a vertex out of range", "(Parts [^]*?DrawElementsUShort [^]*?vector .*\n *)[0-9]+", "$1 999", "a primitive set"},
 };
 
 } // namespace

@@ -249,20 +249,29 @@ PoseInstruction instructionAt(const AnimationSet& set, int clip, double time)
     return instruction;
 }
 
+std::size_t maskCount(const AnimationSet& set)
+{
+    std::size_t count = 0;
+    for (std::uint32_t number = 1; number <= MaskTable::maxMasks; ++number)
+        count += set.masks().find(number) != nullptr;
+    return count;
+}
+
 void addRandomMasks(const AnimationSet& set, std::mt19937& random)
 {
+    static std::vector<std::shared_ptr<const SetMask>> kept;
     const auto joints = static_cast<int>(set.skeleton().jointCount());
     for (int i = 0; i < 4; ++i)
     {
         const auto joint = static_cast<std::size_t>(whole(random, 0, joints - 1));
         const Result<JointMask> tree = JointMask::subtree(set, set.skeleton().joint(joint).name, whole(random, 0, 3));
-        if (tree) (void)set.addMask(tree.value().weights());
+        if (tree) kept.push_back(set.useMask(tree.value().weights()).value());
         JointMask mask(set);
         for (std::size_t j = 0; j < set.skeleton().jointCount(); ++j)
             mask.setJoint(j, static_cast<float>(number(random, -0.3, 1.3)));
         for (std::size_t m = 0; m < set.morphs().size(); ++m)
             mask.setMorph(m, static_cast<float>(number(random, 0.0, 1.0)));
-        (void)set.addMask(mask.weights());
+        kept.push_back(set.useMask(mask.weights()).value());
     }
 }
 
@@ -302,7 +311,7 @@ PoseInstruction randomLayers(const AnimationSet& set, std::mt19937& random)
     out.sampleCount = 0;
     const auto randomMask = [&]
     {
-        const int mask = whole(random, 0, 1) == 0 ? 0 : whole(random, 0, static_cast<int>(set.masks().count()));
+        const int mask = whole(random, 0, 1) == 0 ? 0 : whole(random, 0, static_cast<int>(maskCount(set)));
         return static_cast<std::uint32_t>(mask) << POSE_SAMPLE_MASK_SHIFT;
     };
     const int priorityCount = whole(random, 0, 3);

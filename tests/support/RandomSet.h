@@ -32,7 +32,10 @@ std::shared_ptr<const AnimationSet> makeRandomSet(const RandomSetShape& shape);
 /// An instruction that shows the clip at the time (seconds, held at the ends).
 PoseInstruction instructionAt(const AnimationSet& set, int clip, double time);
 
-/// Adds some masks to the set: subtrees, single joints and random weights.
+/// The number of masks of the set that exist.
+std::size_t maskCount(const AnimationSet& set);
+
+/// Adds some masks to the set, for as long as the process runs: subtrees, single joints and random weights.
 void addRandomMasks(const AnimationSet& set, std::mt19937& random);
 
 /// A pose in which some parts of some joints and some morph weights are set.

@@ -74,7 +74,7 @@ private:
         const BlendSample& sample = _instruction.samples[i];
         const std::uint32_t mask = sample.control >> POSE_SAMPLE_MASK_SHIFT;
         const double own = sample.weight > 0.0f ? static_cast<double>(sample.weight) : 0.0;
-        return mask == 0 ? own : own * static_cast<double>(_set.masks().weights(mask)[_track]);
+        return mask == 0 ? own : own * static_cast<double>(_set.masks().find(mask)->weights[_track]);
     }
 
     /// What the pose of a posed sample has of the track; 0 where nothing is set.

@@ -119,23 +119,20 @@ std::optional<double> AnimationController::sharedRoundsPerSecond(const Animation
     return lowest->settings().speed * weight / round;
 }
 
-/// Sets the pace of all layers from their times before the step.
-void AnimationController::sharePaces()
-{
-    std::array<std::optional<double>, maxLayers> roundsPerSecond;
-    for (std::size_t i = 0; i < layerCount(); ++i)
-        roundsPerSecond[i] = sharedRoundsPerSecond(layer(i));
-    for (std::size_t i = 0; i < layerCount(); ++i)
-        layer(i)._mixer.setRoundsPerSecond(roundsPerSecond[i]);
-}
-
 void AnimationController::step(double seconds)
 {
     const double step = std::isfinite(seconds) ? seconds : 0.0;
     bool isPhaseShared = false;
     for (std::size_t i = 0; i < layerCount(); ++i)
         isPhaseShared = isPhaseShared || layer(i).settings().isPhaseShared;
-    if (isPhaseShared) sharePaces();
+    if (isPhaseShared)
+    {
+        std::array<std::optional<double>, maxLayers> roundsPerSecond; // all from the times before the step
+        for (std::size_t i = 0; i < layerCount(); ++i)
+            roundsPerSecond[i] = sharedRoundsPerSecond(layer(i));
+        for (std::size_t i = 0; i < layerCount(); ++i)
+            layer(i)._mixer.setRoundsPerSecond(roundsPerSecond[i]);
+    }
     for (std::size_t i = 0; i < layerCount(); ++i)
         layer(i).advance(step);
     if (_goals) _goals->advance(set().constraintChains(), step);

@@ -126,7 +126,6 @@ private:
     void writeInstruction() const;
     std::optional<double> sharedRoundsPerSecond(const AnimationLayer& layer) const;
     void step(double seconds);
-    void sharePaces();
     template <typename Function>
     void forEachEvent(Function function) const; ///< function(event), in the order of time, for the last step
     void accumulateRootMotion();

@@ -314,7 +314,12 @@ void AnimationLayer::collect(BlendList& out) const
 /// curve, with its weight.
 void AnimationLayer::collectMotion(RootMotionBlend& out, const RootMotionCurve& usual) const
 {
-    if (_pose && _settings.mode == Mode::Override) collectPoseMotion(out, usual);
+    const double layerWeight = _weight.mean();
+    const auto masked = [&](std::size_t joint) { return layerWeight * (_mask ? _mask->weights[joint] : 1.0); };
+    // A pose that sets the joint's translation holds the character in place.
+    const std::vector<PoseExtent::Joint>* posed = _pose ? &_pose->extent()->joints : nullptr;
+    if (posed && _settings.mode == Mode::Override && usual.joint < posed->size() && (*posed)[usual.joint].moves)
+        out.add({glm::dvec3(0.0), 0.0, usual.up}, _poseShare.mean() * masked(usual.joint), _settings.blendPriority);
     if (_state == PlayState::Stopped || _settings.mode == Mode::Additive) return;
     const double clipShare = _pose ? 1.0 - _poseShare.mean() : 1.0;
     for (std::size_t v = 0; v < _mixer.activeClipCount(); ++v)
@@ -322,21 +327,10 @@ void AnimationLayer::collectMotion(RootMotionBlend& out, const RootMotionCurve& 
         const ClipMixer::ActiveClip& activeClip = _mixer.activeClip(v);
         const Clip& clip = set().clips()[activeClip.playback.clip()];
         const RootMotionCurve& curve = clip.rootMotion() ? *clip.rootMotion() : usual;
-        const double weight =
-            clipShare * activeClip.meanShare * _weight.mean() * (_mask ? _mask->weights[curve.joint] : 1.0);
         out.add(clip.rootMotion() ? rootMotionOf(clip, activeClip.move, activeClip.playback.loopMode())
                                   : RootMotion{glm::dvec3(0.0), 0.0, curve.up},
-                weight, _settings.blendPriority);
+                clipShare * activeClip.meanShare * masked(curve.joint), _settings.blendPriority);
     }
-}
-
-/// A pose that sets the joint's translation holds the character in place.
-void AnimationLayer::collectPoseMotion(RootMotionBlend& out, const RootMotionCurve& usual) const
-{
-    const PoseExtent& extent = *_pose->extent();
-    if (usual.joint >= extent.joints.size() || !extent.joints[usual.joint].moves) return;
-    const double weight = _poseShare.mean() * _weight.mean() * (_mask ? _mask->weights[usual.joint] : 1.0);
-    out.add(RootMotion{glm::dvec3(0.0), 0.0, usual.up}, weight, _settings.blendPriority);
 }
 
 LayerStep AnimationLayer::lastStep() const

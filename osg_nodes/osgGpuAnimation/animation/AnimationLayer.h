@@ -181,7 +181,6 @@ private:
     void fadePose(double share, double seconds, FadeCurve curve);
     std::optional<double> advancePose(double seconds);
     void collectPose(BlendList& out) const;
-    void collectPoseMotion(RootMotionBlend& out, const RootMotionCurve& usual) const;
     Result<void> takeOptions(const std::string& target, double seconds, const CrossfadeOptions& options);
     void begin(std::size_t clip, double seconds, const CrossfadeOptions& options);
     std::optional<double> sharedPhase(int clip) const;

@@ -248,12 +248,4 @@ Result<std::shared_ptr<const SetMask>> AnimationSet::useMask(const std::vector<f
     return mask;
 }
 
-Result<std::uint32_t> AnimationSet::addMask(const std::vector<float>& weights) const
-{
-    const Result<std::shared_ptr<const SetMask>> mask = useMask(weights);
-    if (!mask) return mask.error();
-    _masks->keep(mask.value());
-    return mask.value()->number;
-}
-
 } // namespace osgGpuAnimation

@@ -112,8 +112,6 @@ public:
     /// threads. weights: one per track, in [0, 1], see JointMask::weights().
     /// Errors: a wrong number of weights; MaskTable::maxMasks masks exist.
     Result<std::shared_ptr<const SetMask>> useMask(const std::vector<float>& weights) const;
-    /// The same for a mask that exists as long as the set. Returns its number, from 1 on (see BlendSample::control).
-    Result<std::uint32_t> addMask(const std::vector<float>& weights) const;
     const MaskTable& masks() const { return *_masks; } ///< the masks of this set
 
     /// The value that keepGroundSpeed() was called with; empty: not measured yet. See measureGroundSpeed().

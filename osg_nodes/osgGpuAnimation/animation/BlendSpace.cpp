@@ -17,16 +17,6 @@
 namespace osgGpuAnimation
 {
 
-/// A triangle, a segment or a single point of a triangulation.
-struct PlaneCell
-{
-    std::size_t count = 0;               ///< corners: 1 to 3
-    std::array<std::size_t, 3> points{}; ///< only the first count are used
-};
-
-BlendSpace::BlendSpace() = default;
-BlendSpace::~BlendSpace() = default;
-
 namespace
 {
 
@@ -360,16 +350,13 @@ BlendSpace::Mix BlendSpace::mixAt(const glm::dvec2& parameter) const
     double whole = 0.0;
     for (std::size_t corner = 0; corner < nearestCell->count; ++corner)
     {
-        const Weight added{nearestCell->points[corner], nearest.weights[corner]};
-        if (added.weight < negligibleWeight) continue;
-        const auto isLighter = [&](const Weight& other)
-        { return std::tie(added.weight, other.point) < std::tie(other.weight, added.point); };
-        std::size_t place = mix.count++;
-        for (; place > 0 && isLighter(mix.weights[place - 1]); --place)
-            mix.weights[place] = mix.weights[place - 1];
-        mix.weights[place] = added;
-        whole += added.weight;
+        if (nearest.weights[corner] < negligibleWeight) continue;
+        mix.weights[mix.count++] = {nearestCell->points[corner], nearest.weights[corner]};
+        whole += nearest.weights[corner];
     }
+    std::sort(mix.weights.begin(), mix.weights.begin() + mix.count,
+              [](const Weight& a, const Weight& b)
+              { return std::tie(a.weight, b.point) < std::tie(b.weight, a.point); });
     for (Weight& weight : mix.weights)
         weight.weight /= whole;
     return mix;

@@ -18,7 +18,13 @@ namespace osgGpuAnimation
 {
 
 class AnimationSet;
-struct PlaneCell;
+
+/// A triangle, a segment or a single point of a triangulation.
+struct PlaneCell
+{
+    std::size_t count = 0;               ///< corners: 1 to 3
+    std::array<std::size_t, 3> points{}; ///< only the first count are used
+};
 
 /// Clips at positions on a line or in a plane: a layer that plays it mixes the clips around its parameter (the two
 /// neighbours on a line, the three corners of a triangle in a plane) and keeps them in phase.
@@ -81,7 +87,6 @@ public:
     static Result<std::shared_ptr<const BlendSpace>> create(const AnimationSet& set,
                                                             const std::vector<Position>& positions,
                                                             const std::vector<std::string>& syncMarkers = {});
-    ~BlendSpace();
 
     const std::vector<Point>& points() const { return _points; }                 ///< in the order of the positions
     const std::vector<std::string>& syncMarkers() const { return _syncMarkers; } ///< as passed to create()
@@ -98,7 +103,7 @@ public:
                                                             std::vector<std::string> syncMarkers);
 
 private:
-    BlendSpace();
+    BlendSpace() = default;
 
     double wayOf(const AnimationSet& set, std::size_t first, std::size_t second) const;
 

@@ -21,15 +21,6 @@ double finiteProduct(double a, double b)
     return std::clamp(a * b, -max, max);
 }
 
-/// A step through the common time line of a blend space as a step through one of its clips.
-PlaybackStep scaled(PlaybackStep step, double factor)
-{
-    step.from *= factor;
-    step.to *= factor;
-    step.distance = finiteProduct(step.distance, factor);
-    return step;
-}
-
 /// The phase of a blend space at the time of one of its clips.
 double phaseIn(const BlendSpace::Point& point, const ClipPlayback& playback)
 {
@@ -412,12 +403,13 @@ void ClipMixer::moveSpace(ActiveSpace& space, double seconds, bool isMoving)
     {
         if (at(i).space != space.number) continue;
         const BlendSpace::Point& point = space.space->points()[at(i).point];
-        if (!isMoving)
-            at(i).move = PlaybackStep();
-        else if (newest.loopMode() == LoopMode::Loop)
-            at(i).move = loopStep(point, before, space.phase, rounds, own);
-        else
-            at(i).move = scaled(turn, round.seconds() > 0.0 ? point.duration() / round.seconds() : 0.0);
+        PlaybackStep& move = at(i).move = turn;
+        if (isMoving && newest.loopMode() == LoopMode::Loop) move = loopStep(point, before, space.phase, rounds, own);
+        const double factor = round.seconds() > 0.0 ? point.duration() / round.seconds() : 0.0;
+        if (newest.loopMode() == LoopMode::Loop) continue;
+        move.from *= factor;
+        move.to *= factor;
+        move.distance = finiteProduct(move.distance, factor);
     }
     placeClips(space);
 }

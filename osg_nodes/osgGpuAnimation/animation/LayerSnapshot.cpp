@@ -67,14 +67,6 @@ std::optional<std::string> findFault(const LayerSnapshot& snapshot, const Animat
     return std::nullopt;
 }
 
-int phaseGroupOf(const ClipMixer& mixer, std::size_t activeClip)
-{
-    std::size_t first = 0;
-    while (mixer.activeClip(first).phaseGroup != mixer.activeClip(activeClip).phaseGroup)
-        ++first;
-    return static_cast<int>(first);
-}
-
 /// The spaces of the snapshot for the set, numbered by their order.
 Result<std::vector<ClipMixer::ActiveSpace>> spacesOf(const LayerSnapshot& snapshot, const AnimationSet& set)
 {
@@ -107,9 +99,12 @@ LayerSnapshot LayerSnapshot::of(const AnimationLayer& layer)
         const auto space = std::find_if(mixer.spaces().begin(), mixer.spaces().end(),
                                         [&](const ActiveSpace& active) { return active.number == activeClip.space; });
         const bool isInSpace = space != mixer.spaces().end();
+        int group = 0; // the first of its phase group
+        while (mixer.activeClip(static_cast<std::size_t>(group)).phaseGroup != activeClip.phaseGroup)
+            ++group;
         snapshot.activeClips.push_back(
             {playback.clip(), playback.time(), playback.speed(), playback.loopMode(), playback.isReturning(),
-             playback.isFresh(), activeClip.share, activeClip.shareBefore, phaseGroupOf(mixer, v),
+             playback.isFresh(), activeClip.share, activeClip.shareBefore, group,
              isInSpace ? static_cast<int>(space - mixer.spaces().begin()) : -1, activeClip.point, activeClip.weight});
     }
     snapshot.crossfade = mixer.fade().state();

@@ -23,30 +23,11 @@ std::shared_ptr<const SetMask> MaskTable::use(const std::vector<float>& weights)
     return made;
 }
 
-void MaskTable::keep(const std::shared_ptr<const SetMask>& mask)
-{
-    const std::lock_guard<std::mutex> lock(_mutex);
-    if (std::find(_kept.begin(), _kept.end(), mask) == _kept.end()) _kept.push_back(mask);
-}
-
-std::size_t MaskTable::count() const
-{
-    const std::lock_guard<std::mutex> lock(_mutex);
-    return static_cast<std::size_t>(
-        std::count_if(_masks.begin(), _masks.end(), [](const auto& mask) { return !mask.expired(); }));
-}
-
 std::shared_ptr<const SetMask> MaskTable::find(std::uint32_t number) const
 {
     if (number == 0) return nullptr;
     const std::lock_guard<std::mutex> lock(_mutex);
     return number <= _masks.size() ? _masks[number - 1].lock() : nullptr;
-}
-
-const float* MaskTable::weights(std::uint32_t number) const
-{
-    const std::shared_ptr<const SetMask> mask = find(number);
-    return mask ? mask->weights.data() : nullptr;
 }
 
 } // namespace osgGpuAnimation

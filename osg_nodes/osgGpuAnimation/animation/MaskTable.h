@@ -26,19 +26,12 @@ public:
 
     /// The mask with these weights. Creates it if it is new. Null: maxMasks masks exist.
     std::shared_ptr<const SetMask> use(const std::vector<float>& weights);
-    /// The table holds the mask as long as it exists itself. mask: of use().
-    void keep(const std::shared_ptr<const SetMask>& mask);
-
-    std::size_t count() const; ///< number of masks that exist
     /// Null for 0 (no mask) and for numbers without a mask.
     std::shared_ptr<const SetMask> find(std::uint32_t number) const;
-    /// The weights of a mask, one per track, valid while the mask exists. Null as for find().
-    const float* weights(std::uint32_t number) const;
 
 private:
     mutable std::mutex _mutex;
     std::vector<std::weak_ptr<const SetMask>> _masks; ///< by number - 1; expired: the number is free
-    std::vector<std::shared_ptr<const SetMask>> _kept;
 };
 
 } // namespace osgGpuAnimation

@@ -51,21 +51,19 @@ KeyframePair findKeyframes(const AnimationSet& set, const BlendSample& sample)
     return pair;
 }
 
-/// Null if the pose does not fit the set.
-const PosedKeyframe* findPosed(const AnimationSet& set, const PoseInstruction& instruction, const BlendSample& sample)
-{
-    const JointPose* pose =
-        sample.keyframe < instruction.poses.size() ? instruction.poses[sample.keyframe].get() : nullptr;
-    return pose && pose->keyframe().trackCount() == set.trackCount() ? &pose->keyframe() : nullptr;
-}
-
 /// The samples of an instruction; blends them track by track.
 class Sources
 {
 public:
     Sources(const AnimationSet& set, const PoseInstruction& instruction)
         : Sources(set, instruction.samples.data(), instruction.sampleCount,
-                  [&](const BlendSample& sample) { return findPosed(set, instruction, sample); })
+                  [&](const BlendSample& sample) -> const PosedKeyframe*
+                  {
+                      if (sample.keyframe >= instruction.poses.size()) return nullptr;
+                      const JointPose* pose = instruction.poses[sample.keyframe].get();
+                      const bool fits = pose && pose->keyframe().trackCount() == set.trackCount();
+                      return fits ? &pose->keyframe() : nullptr;
+                  })
     {
     }
 
@@ -189,13 +187,6 @@ private:
     std::vector<bool>& _isMixed;
 };
 
-AffineMatrix weightsAsMatrix(const JointTransform& block)
-{
-    AffineMatrix matrix;
-    matrix.rows = {block.translation, block.rotation, block.scale};
-    return matrix;
-}
-
 void mix(const AnimationSet& set, const Sources& sources, const Targets& targets,
          std::vector<JointTransform>& outTracks)
 {
@@ -279,9 +270,13 @@ void palette(const AnimationSet& set, const std::vector<JointTransform>& tracks,
     const std::vector<PaletteEntry>& entries = set.palette();
     outPalette.resize(entries.size());
     for (std::size_t e = 0; e < entries.size(); ++e)
-        outPalette[e] = entries[e].kind == PaletteEntry::Kind::Weights
-                            ? weightsAsMatrix(tracks[entries[e].track])
-                            : jointToModel[entries[e].joint] * entries[e].inverseBind;
+        if (entries[e].kind != PaletteEntry::Kind::Weights)
+            outPalette[e] = jointToModel[entries[e].joint] * entries[e].inverseBind;
+        else
+        {
+            const JointTransform& block = tracks[entries[e].track];
+            outPalette[e].rows = {block.translation, block.rotation, block.scale};
+        }
 }
 
 void evaluate(const AnimationSet& set, const PoseInstruction& instruction, const AffineMatrix& rootToModel,

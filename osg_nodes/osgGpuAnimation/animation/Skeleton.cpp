@@ -56,12 +56,6 @@ std::vector<int> findDepths(const std::vector<Joint>& joints)
     return depths;
 }
 
-JointTransform cleaned(const JointTransform& rest)
-{
-    return {glm::vec4(glm::vec3(rest.translation), 0.0f), glm::vec4(Rotation::unit(glm::dvec4(rest.rotation))),
-            glm::vec4(glm::vec3(rest.scale), 0.0f)};
-}
-
 } // namespace
 
 Result<Skeleton> Skeleton::create(std::vector<Joint> joints)
@@ -86,7 +80,8 @@ Result<Skeleton> Skeleton::create(std::vector<Joint> joints)
         Joint& joint = joints[order[i]];
         // A parent is at an earlier level, so its new index is known.
         if (joint.parent >= 0) joint.parent = skeleton._jointOfInput[joint.parent];
-        joint.rest = cleaned(joint.rest);
+        joint.rest.translation.w = joint.rest.scale.w = 0.0f;
+        joint.rest.rotation = glm::vec4(Rotation::unit(glm::dvec4(joint.rest.rotation)));
         skeleton._depths.push_back(depths[order[i]]);
         if (joint.sourceNode >= 0) skeleton._jointOfSourceNode.emplace(joint.sourceNode, static_cast<int>(i));
         skeleton._joints.push_back(std::move(joint));

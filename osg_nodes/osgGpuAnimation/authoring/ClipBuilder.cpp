@@ -28,18 +28,6 @@ float rounded(double value)
     return static_cast<float>(std::clamp(value, -max, max));
 }
 
-/// The index of a path's first number among the twelve numbers of a track.
-std::size_t firstComponent(Path path)
-{
-    return path == Path::Rotation ? 4 : path == Path::Scale ? 8 : 0;
-}
-
-const char* nameOf(Path path)
-{
-    static constexpr const char* names[]{"translation", "rotation", "scale", "weights"};
-    return names[static_cast<std::size_t>(path)];
-}
-
 std::size_t valuesPerKey(const Channel& channel)
 {
     return channel.interpolation == Interpolation::CubicSpline ? 3 : 1;
@@ -343,36 +331,27 @@ std::size_t ClipBuilder::componentCount(const Channel& channel) const
     return channel.path == Path::Rotation ? 4 : 3;
 }
 
-std::string ClipBuilder::describe(const Channel& channel) const
-{
-    return std::string(nameOf(channel.path)) + " of " + (channel.path == Path::Weights ? "morph " : "joint ") +
-           std::to_string(channel.target) + ": ";
-}
-
-std::pair<std::size_t, std::size_t> ClipBuilder::keysOf(const Channel& channel) const
-{
-    const auto target = static_cast<std::size_t>(channel.target);
-    std::size_t first = target * 3 + static_cast<std::size_t>(channel.path);
-    if (channel.path != Path::Weights) return {first, first + 1};
-    if (channel.weight < 0) return {_firstKeyOfMorph[target], _firstKeyOfMorph[target + 1]};
-    first = _firstKeyOfMorph[target] + static_cast<std::size_t>(channel.weight);
-    return {first, first + 1};
-}
-
 Result<void> ClipBuilder::add(Channel channel)
 {
-    const auto subject = [&] { return describe(channel); };
-    const std::size_t targets = channel.path == Path::Weights ? _weightCounts.size() : _jointCount;
+    const bool isOfMorph = channel.path == Path::Weights;
+    const auto subject = [&]
+    {
+        static constexpr const char* names[]{"translation", "rotation", "scale", "weights"};
+        return std::string(names[static_cast<std::size_t>(channel.path)]) + (isOfMorph ? " of morph " : " of joint ") +
+               std::to_string(channel.target) + ": ";
+    };
+    const std::size_t targets = isOfMorph ? _weightCounts.size() : _jointCount;
     if (channel.target < 0 || static_cast<std::size_t>(channel.target) >= targets)
         return Error{subject() + "there are " + std::to_string(targets)};
     if (componentCount(channel) == 0) return Error{subject() + "it has no weights"};
-    if (channel.path == Path::Weights && channel.weight >= 0 &&
-        static_cast<std::size_t>(channel.weight) >= _weightCounts[channel.target])
+    if (isOfMorph && channel.weight >= 0 && static_cast<std::size_t>(channel.weight) >= _weightCounts[channel.target])
         return Error{subject() + "there is no weight " + std::to_string(channel.weight) + " among " +
                      std::to_string(_weightCounts[channel.target])};
-    const auto [firstKey, endKey] = keysOf(channel);
-    const auto first = _driven.begin() + firstKey;
-    const auto end = _driven.begin() + endKey;
+    const auto target = static_cast<std::size_t>(channel.target);
+    const auto first =
+        _driven.begin() + (isOfMorph ? _firstKeyOfMorph[target] + static_cast<std::size_t>(std::max(channel.weight, 0))
+                                     : target * 3 + static_cast<std::size_t>(channel.path));
+    const auto end = isOfMorph && channel.weight < 0 ? _driven.begin() + _firstKeyOfMorph[target + 1] : first + 1;
     if (std::find(first, end, true) != end) return Error{subject() + "another channel has this target already"};
     if (auto fault = findFaultInTimes(channel.times)) return Error{subject() + *fault};
     if (auto fault = findFaultInValues(channel, componentCount(channel))) return Error{subject() + *fault};
@@ -412,10 +391,11 @@ Clip ClipBuilder::build(std::string name)
     for (const ChannelCurve& curve : curves)
     {
         const auto target = static_cast<std::size_t>(curve.channel().target);
-        const std::size_t track = curve.channel().path == Path::Weights ? _firstTrackOfMorph[target] : target;
-        const std::size_t first = curve.channel().weight >= 0 && curve.channel().path == Path::Weights
-                                      ? static_cast<std::size_t>(curve.channel().weight)
-                                      : firstComponent(curve.channel().path);
+        const Path path = curve.channel().path;
+        const std::size_t track = path == Path::Weights ? _firstTrackOfMorph[target] : target;
+        std::size_t first = path == Path::Rotation ? 4 : path == Path::Scale ? 8 : 0;
+        if (path == Path::Weights && curve.channel().weight >= 0)
+            first = static_cast<std::size_t>(curve.channel().weight);
         writeCurve(curve, moments, clip, track, first, *clip._data);
     }
     _channels.clear();

@@ -48,9 +48,6 @@ public:
 private:
     Clip::Form form() const;
     std::size_t componentCount(const Channel& channel) const;
-    std::string describe(const Channel& channel) const;
-    /// The first and the last key + 1 of what the channel drives.
-    std::pair<std::size_t, std::size_t> keysOf(const Channel& channel) const;
 
     std::vector<JointTransform> _rest;
     std::size_t _jointCount;

@@ -34,16 +34,6 @@ constexpr int attempts = 4;
 /// Of the model's size: something attached to a joint reaches that far.
 constexpr double reachShare = 0.5;
 
-/// True if all values of a track are within `most` of a value.
-template <typename Distance>
-bool isNear(const std::vector<JointTransform>& data, std::size_t track, std::size_t stride, const JointTransform& value,
-            double max, Distance distance)
-{
-    for (std::size_t at = track; at < data.size(); at += stride)
-        if (!(distance(data[at], value) <= max)) return false;
-    return true;
-}
-
 constexpr std::array<glm::vec4 JointTransform::*, 3> partsOfTracks{&JointTransform::translation,
                                                                    &JointTransform::rotation, &JointTransform::scale};
 constexpr std::size_t rotationPart = 1;
@@ -374,7 +364,10 @@ private:
             {
                 for (const JointTransform value : {_set.restPose()[joint], data[joint]})
                 {
-                    if (!isNear(data, joint, stride, value, limit, distance)) continue;
+                    bool isNear = true;
+                    for (std::size_t at = joint; at < data.size(); at += stride)
+                        isNear = isNear && distance(data[at], value) <= limit;
+                    if (!isNear) continue;
                     for (std::size_t at = joint; at < data.size(); at += stride)
                         data[at].*part = value.*part;
                     return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "assimp/AssimpFile.h"
-#include "assimp/ConversionOutput.h"
+#include "assimp/ConversionProcess.h"
 
 #include <nlohmann/json.hpp>
 
@@ -29,11 +29,6 @@ void limit(int resource, rlim_t max)
     setrlimit(static_cast<__rlimit_resource>(resource), &both);
 }
 
-[[noreturn]] void outOfMemory()
-{
-    _exit(assimp::exitOutOfMemory);
-}
-
 bool write(const std::string& bytes, std::FILE* out)
 {
     return std::fwrite(bytes.data(), 1, bytes.size(), out) == bytes.size();
@@ -41,7 +36,7 @@ bool write(const std::string& bytes, std::FILE* out)
 
 } // namespace
 
-/// Converts a file to GLB for readAsGlbApart(), which starts it. See ConversionOutput.h.
+/// Converts a file to GLB for readAsGlbApart(), which starts it. See ConversionProcess.h.
 int main(int count, char** arguments)
 {
     if (count != 7)
@@ -60,7 +55,7 @@ int main(int count, char** arguments)
     limit(RLIMIT_FSIZE, 0);
     limit(RLIMIT_CPU, std::strtoull(arguments[1], nullptr, 10));
     if (!assimp::reservesAddressSpace) limit(RLIMIT_AS, std::strtoull(arguments[2], nullptr, 10));
-    std::set_new_handler(outOfMemory);
+    std::set_new_handler([] { _exit(assimp::exitOutOfMemory); });
 
     gltf::ImportOptions options;
     options.allowOutsideFiles = arguments[3][0] == '1';

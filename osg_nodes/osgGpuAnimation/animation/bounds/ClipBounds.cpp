@@ -134,13 +134,6 @@ double radiusOf(const TransformedBox& box)
     return radius;
 }
 
-/// Ignores the alpha of the keyframes.
-TrackMotion trackMotion(const KeyframePair& keyframes, std::size_t track)
-{
-    if (keyframes.spline) return boundSpline(keyframes.first + 3 * track, keyframes.second + 3 * track);
-    return boundLinear(keyframes.first[track], keyframes.second[track]);
-}
-
 /// Upper bounds for a joint's transform to model space, v -> A v + c, from root to leaf by the product rule.
 struct ChainMotion
 {
@@ -254,6 +247,7 @@ private:
         }
     }
 
+    /// Ignores the alpha of the keyframes.
     void boundMotion(const KeyframePair& keyframes)
     {
         for (std::size_t j = 0; j < _motions.size(); ++j)
@@ -261,7 +255,8 @@ private:
             if (!_isNeeded[j]) continue;
             const int parent = _set.skeleton().joint(j).parent;
             const ChainMotion above = parent < 0 ? ChainMotion() : _motions[parent];
-            _motions[j] = above.child(trackMotion(keyframes, j));
+            _motions[j] = above.child(keyframes.spline ? boundSpline(keyframes.first + 3 * j, keyframes.second + 3 * j)
+                                                       : boundLinear(keyframes.first[j], keyframes.second[j]));
         }
     }
 

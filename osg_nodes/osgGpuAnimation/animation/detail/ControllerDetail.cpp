@@ -50,13 +50,6 @@ bool coversAll(const AnimationLayer& layer)
     return shares > 1.0 - 1e-6;
 }
 
-/// The number of blend samples of the layer's clips, see BlendList.
-std::size_t samplesOf(const AnimationLayer& layer)
-{
-    const std::size_t clips = layer.state() == PlayState::Stopped ? 0 : layer.mixer().activeClipCount();
-    return (clips + (layer.poseShare() > 0.0f ? 1 : 0)) * (isAdditive(layer) ? 2 : 1);
-}
-
 // A clip that fades into itself occurs twice: a mix of two of its times can be a pose that the clip never shows.
 void addActiveClips(const AnimationLayer& layer, std::vector<PlayedClip>& out)
 {
@@ -82,13 +75,14 @@ void ControllerDetail::findPlayedClips(const AnimationController& controller, st
 {
     out.clear();
     bool isRestHidden = false;
-    std::size_t samples = 0;
+    std::size_t samples = 0; // see BlendList
     for (std::size_t i = 0; i < controller.layerCount(); ++i)
     {
         const AnimationLayer& layer = controller.layer(i);
         if (!(layer.weight() > 0.0f)) continue;
         isRestHidden = isRestHidden || coversAll(layer);
-        samples += samplesOf(layer);
+        const std::size_t clips = layer.state() == PlayState::Stopped ? 0 : layer.mixer().activeClipCount();
+        samples += (clips + (layer.poseShare() > 0.0f ? 1 : 0)) * (isAdditive(layer) ? 2 : 1);
         addActiveClips(layer, out);
     }
     // If samples are dropped, the weights of the others may not sum to 1.

@@ -67,12 +67,6 @@ private:
     std::uint32_t _bit;
 };
 
-void writeNumbers(BitRun& run, const glm::uvec3& numbers, const glm::uvec3& bits)
-{
-    for (int axis = 0; axis < 3; ++axis)
-        run.write(numbers[axis], bits[axis]);
-}
-
 glm::uvec3 readNumbers(BitRun& run, const glm::uvec3& bits)
 {
     glm::uvec3 numbers;
@@ -243,7 +237,9 @@ bool CompactTracks::pack(std::vector<JointTransform>& data, std::size_t trackCou
             const auto write = [&](const Part& part, const glm::vec3& value)
             {
                 BitRun run(record, part.firstBit);
-                writeNumbers(run, part.numbersOf(value), part.bits);
+                const glm::uvec3 numbers = part.numbersOf(value);
+                for (int axis = 0; axis < 3; ++axis)
+                    run.write(numbers[axis], part.bits[axis]);
                 return run;
             };
             const Track& track = tracks[joint];

@@ -25,14 +25,6 @@ glm::dvec4 lerp(const glm::vec4& a, const glm::vec4& b, double alpha)
     return glm::dvec4(a) * (1.0 - alpha) + glm::dvec4(b) * alpha;
 }
 
-MixedTrack mixLinear(const JointTransform& a, const JointTransform& b, double alpha, bool isWeights)
-{
-    return {lerp(a.translation, b.translation, alpha),
-            isWeights ? lerp(a.rotation, b.rotation, alpha)
-                      : Rotation::slerp(glm::dvec4(a.rotation), glm::dvec4(b.rotation), alpha),
-            lerp(a.scale, b.scale, alpha)};
-}
-
 /// a and b each point to value, in-tangent, out-tangent.
 MixedTrack mixSpline(const JointTransform* a, const JointTransform* b, double alpha, bool isWeights)
 {
@@ -76,7 +68,11 @@ MixedTrack MixedTrack::between(const KeyframePair& keyframes, std::size_t track,
 {
     if (keyframes.spline)
         return mixSpline(keyframes.first + 3 * track, keyframes.second + 3 * track, keyframes.alpha, isWeights);
-    return mixLinear(keyframes.first[track], keyframes.second[track], keyframes.alpha, isWeights);
+    const JointTransform &a = keyframes.first[track], &b = keyframes.second[track];
+    return {lerp(a.translation, b.translation, keyframes.alpha),
+            isWeights ? lerp(a.rotation, b.rotation, keyframes.alpha)
+                      : Rotation::slerp(glm::dvec4(a.rotation), glm::dvec4(b.rotation), keyframes.alpha),
+            lerp(a.scale, b.scale, keyframes.alpha)};
 }
 
 TrackBlend::TrackBlend(const JointTransform& rest, bool isWeights) : _isWeights(isWeights)

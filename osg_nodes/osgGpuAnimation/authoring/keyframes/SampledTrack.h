@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -54,6 +56,25 @@ auto sampledTrack(const std::vector<double>& times, const Function& function, co
         keys.push_back(std::move(key));
     }
     return keys;
+}
+
+// For tracks of several numbers.
+
+template <class Number>
+std::vector<Number> mixedNumbers(std::vector<Number> from, const std::vector<Number>& to, double share)
+{
+    for (std::size_t i = 0; i < from.size(); ++i)
+        from[i] += static_cast<Number>(share) * (to[i] - from[i]);
+    return from;
+}
+
+template <class Number>
+double largestDifference(const std::vector<Number>& a, const std::vector<Number>& b)
+{
+    double max = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        max = std::max(max, static_cast<double>(std::abs(a[i] - b[i])));
+    return max;
 }
 
 } // namespace osgGpuAnimation

@@ -130,14 +130,6 @@ void MeshSimplifier::consider(std::uint32_t from, std::uint32_t to)
     if (cost <= max) _next.push({cost, from, to, _mesh.changeCountOf(from), _mesh.changeCountOf(to)});
 }
 
-void MeshSimplifier::considerAll()
-{
-    _next = {};
-    for (std::uint32_t point = 0; point < _mesh.pointCount() && !_surface.isStopped(); ++point)
-        for (const std::uint32_t neighbour : _mesh.neighboursOf(point))
-            consider(point, neighbour);
-}
-
 /// Considers pairs of points within the limit in all poses, whether an edge connects them or not.
 void MeshSimplifier::considerNear()
 {
@@ -183,7 +175,10 @@ void MeshSimplifier::reduce(double limit, bool keepSeams, bool joinPieces)
     bool hasCollapsed = true;
     for (int pass = 0; pass < maxPasses && hasCollapsed; ++pass)
     {
-        considerAll();
+        _next = {};
+        for (std::uint32_t point = 0; point < _mesh.pointCount() && !_surface.isStopped(); ++point)
+            for (const std::uint32_t neighbour : _mesh.neighboursOf(point))
+                consider(point, neighbour);
         if (joinPieces) considerNear();
         hasCollapsed = collapseCandidates();
     }

@@ -109,7 +109,6 @@ private:
     void addPlanes();
     bool isAlike(std::uint32_t vertex, std::uint32_t other) const;
     void consider(std::uint32_t from, std::uint32_t to);
-    void considerAll();
     void considerNear();
     bool isWithinLimit(std::uint32_t point, std::uint32_t other) const;
     bool collapseCandidates();

@@ -79,27 +79,17 @@ std::optional<Error> findFault(const Rig& from, const Rig& to, const RetargetOpt
 
 } // namespace
 
-JointPlaces::JointPlaces(const Skeleton& skeleton)
-{
-    for (const Joint& joint : skeleton.joints())
-        add(joint, joint.rest);
-}
+JointPlaces::JointPlaces(const Skeleton& skeleton) : JointPlaces(skeleton, restPose(skeleton, {}).data(), 1) {}
 
 JointPlaces::JointPlaces(const Skeleton& skeleton, const JointTransform* key, std::size_t step)
 {
     for (const Joint& joint : skeleton.joints())
     {
-        add(joint, *key);
+        const glm::dmat4 local = key->toMatrix().toColumns();
+        jointToModel.push_back(joint.parent < 0 ? local : jointToModel[joint.parent] * local);
+        rotations.push_back(rotationOf(joint.parent) * Rotation::unitQuaternion(key->rotation));
         key += step;
     }
-}
-
-/// Adds the next joint in level order.
-void JointPlaces::add(const Joint& joint, const JointTransform& transform)
-{
-    const glm::dmat4 local = transform.toMatrix().toColumns();
-    jointToModel.push_back(joint.parent < 0 ? local : jointToModel[joint.parent] * local);
-    rotations.push_back(rotationOf(joint.parent) * Rotation::unitQuaternion(transform.rotation));
 }
 
 glm::dquat JointPlaces::rotationOf(int joint) const
@@ -191,7 +181,6 @@ Result<RigMatch> RigMatch::create(const Rig& from, const Rig& to, const Retarget
         return Error{"the hips \"" + options.hips + "\" are no joint with a counterpart; the joints are " +
                      quotedNames(to.skeleton.joints())};
     match.findBodies(to.skeleton);
-    match.markBodies(to.skeleton);
     match.markByName(from, to, options.match);
     return match;
 }
@@ -261,24 +250,17 @@ bool RigMatch::hasSameBones(const Rig& from, const Rig& to) const
                        });
 }
 
-/// The joints whose counterparts have other rest rotations.
-std::vector<const JointMatch*> RigMatch::otherRests(const Rig& from, const Rig& to) const
-{
-    std::vector<const JointMatch*> others;
-    for (const JointMatch& match : _matches)
-        if (!isNear(Rotation::unitQuaternion(to.skeleton.joint(match.joint).rest.rotation),
-                    Rotation::unitQuaternion(from.skeleton.joint(match.source).rest.rotation)))
-            others.push_back(&match);
-    return others;
-}
-
 void RigMatch::markByName(const Rig& from, const Rig& to, ClipMatch wanted)
 {
     if (wanted == ClipMatch::Retarget) return;
     if (wanted == ClipMatch::Automatic)
     {
         if (!from.clips || !hasSameBones(from, to)) return;
-        const std::vector<const JointMatch*> others = otherRests(from, to);
+        std::vector<const JointMatch*> others; // those whose counterparts have other rest rotations
+        for (const JointMatch& match : _matches)
+            if (!isNear(Rotation::unitQuaternion(to.skeleton.joint(match.joint).rest.rotation),
+                        Rotation::unitQuaternion(from.skeleton.joint(match.source).rest.rotation)))
+                others.push_back(&match);
         if (std::none_of(from.clips->begin(), from.clips->end(),
                          [&](const Clip& clip) { return isFirstFrame(clip, from.skeleton, others); }))
             return;
@@ -371,11 +353,7 @@ void RigMatch::findBodies(const Skeleton& skeleton)
     }
     for (BodyMatch& body : _bodies)
         body.ratio = ratioOf(body, legOf);
-}
-
-/// The hips and the joints above them.
-void RigMatch::markBodies(const Skeleton& skeleton)
-{
+    // The hips and the joints above them move the body.
     std::vector<double> ratios(skeleton.jointCount(), 0.0); // 0: not marked
     for (const BodyMatch& body : _bodies)
         for (int joint = static_cast<int>(_matches[body.hips].joint); joint >= 0 && ratios[joint] == 0.0;

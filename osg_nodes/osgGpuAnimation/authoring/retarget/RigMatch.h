@@ -43,9 +43,6 @@ struct JointPlaces
     }
     /// Where the joint would be if it kept its rest transform relative to an ancestor, -1 for the model.
     glm::dvec3 restOriginOf(std::size_t joint, int ancestor, const JointPlaces& rest) const;
-
-private:
-    void add(const Joint& joint, const JointTransform& transform);
 };
 
 /// Comparisons of rest poses, apart from rounding.
@@ -107,10 +104,8 @@ private:
     void markSameRigs(const Rig& from, const Rig& to);
     void markByName(const Rig& from, const Rig& to, ClipMatch wanted);
     bool hasSameBones(const Rig& from, const Rig& to) const;
-    std::vector<const JointMatch*> otherRests(const Rig& from, const Rig& to) const;
     void findHips(const Skeleton& skeleton, const std::string& name);
     void findBodies(const Skeleton& skeleton);
-    void markBodies(const Skeleton& skeleton);
     double ratioOf(const BodyMatch& body, const std::vector<int>& legOf) const;
 
     JointPlaces _fromRest, _toRest;

@@ -44,8 +44,8 @@ bool isWithin(const FootContact& contact, double time, double duration)
 bool moves(const AnimationLayer& layer, const AnimationSet& set, std::size_t joint)
 {
     if (layer.settings().mode != AnimationLayer::Mode::Override || layer.state() == PlayState::Stopped) return false;
-    const float* mask = set.masks().weights(ControllerDetail::maskNumber(layer));
-    return layer.weight() * (mask ? mask[joint] : 1.0f) >= 0.5f;
+    const std::shared_ptr<const SetMask> mask = set.masks().find(ControllerDetail::maskNumber(layer));
+    return layer.weight() * (mask ? mask->weights[joint] : 1.0f) >= 0.5f;
 }
 
 } // namespace

@@ -42,11 +42,6 @@ public:
     }
 };
 
-bool isFlattened(const osg::Node& node)
-{
-    return node.getDataVariance() == osg::Object::STATIC && std::strcmp(node.className(), "Group") == 0;
-}
-
 /// The transform from the space below the path's last node to the space above its first. gone: matrices of removed
 /// transforms, which are applied at the groups that replaced them.
 osg::Matrix pathToWorld(const osg::NodePath& path, const std::vector<osg::Matrix>& gone)
@@ -55,9 +50,11 @@ osg::Matrix pathToWorld(const osg::NodePath& path, const std::vector<osg::Matrix
     std::size_t used = 0;
     for (const osg::Node* node : path)
     {
+        const bool isFlattened =
+            node->getDataVariance() == osg::Object::STATIC && std::strcmp(node->className(), "Group") == 0;
         if (const osg::Transform* transform = node->asTransform())
             transform->computeLocalToWorldMatrix(toWorld, nullptr);
-        else if (isFlattened(*node) && used < gone.size())
+        else if (isFlattened && used < gone.size())
         {
             // Each matrix on the stack includes the ones before it.
             const osg::Matrix before = used > 0 ? osg::Matrix::inverse(gone[used - 1]) : osg::Matrix();

@@ -350,13 +350,16 @@ BlendSpace::Mix BlendSpace::mixAt(const glm::dvec2& parameter) const
     double whole = 0.0;
     for (std::size_t corner = 0; corner < nearestCell->count; ++corner)
     {
-        if (nearest.weights[corner] < negligibleWeight) continue;
-        mix.weights[mix.count++] = {nearestCell->points[corner], nearest.weights[corner]};
-        whole += nearest.weights[corner];
+        const Weight added{nearestCell->points[corner], nearest.weights[corner]};
+        if (added.weight < negligibleWeight) continue;
+        const auto isLighter = [&](const Weight& other)
+        { return std::tie(added.weight, other.point) < std::tie(other.weight, added.point); };
+        std::size_t place = mix.count++;
+        for (; place > 0 && isLighter(mix.weights[place - 1]); --place)
+            mix.weights[place] = mix.weights[place - 1];
+        mix.weights[place] = added;
+        whole += added.weight;
     }
-    std::sort(mix.weights.begin(), mix.weights.begin() + mix.count,
-              [](const Weight& a, const Weight& b)
-              { return std::tie(a.weight, b.point) < std::tie(b.weight, a.point); });
     for (Weight& weight : mix.weights)
         weight.weight /= whole;
     return mix;

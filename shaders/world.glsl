@@ -8,14 +8,12 @@ mat3x4 fetchMatrix(samplerBuffer source, int texel)
     return mat3x4(texelFetch(source, texel), texelFetch(source, texel + 1), texelFetch(source, texel + 2));
 }
 
-// Numbers beyond POSE_LARGEST_NUMBER are limited, so products of limited matrices have no infinite terms. bool hasLimits:
-// a constant of the variant; false if the numbers of the batch cannot become so large.
+// Numbers beyond POSE_LARGEST_NUMBER are limited, so products of limited matrices have no infinite terms.
 mat3x4 limited(mat3x4 matrix)
 {
     const vec4 largest = vec4(POSE_LARGEST_NUMBER);
-    return hasLimits ? mat3x4(clamp(matrix[0], -largest, largest), clamp(matrix[1], -largest, largest),
-                              clamp(matrix[2], -largest, largest))
-                     : matrix;
+    return mat3x4(clamp(matrix[0], -largest, largest), clamp(matrix[1], -largest, largest),
+                  clamp(matrix[2], -largest, largest));
 }
 
 vec4 withoutNan(vec4 row)
@@ -26,7 +24,7 @@ vec4 withoutNan(vec4 row)
 // A local matrix, in which what is no number becomes 0.
 mat3x4 limitedLocal(mat3x4 matrix)
 {
-    return hasLimits ? limited(mat3x4(withoutNan(matrix[0]), withoutNan(matrix[1]), withoutNan(matrix[2]))) : matrix;
+    return limited(mat3x4(withoutNan(matrix[0]), withoutNan(matrix[1]), withoutNan(matrix[2])));
 }
 
 // a * b of affine matrices stored by rows.

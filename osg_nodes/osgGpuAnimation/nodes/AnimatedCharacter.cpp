@@ -175,7 +175,6 @@ Result<void> AnimatedCharacter::takeOff(const osg::Node* garment)
     for (unsigned int child = getNumChildren(); child-- > 0;)
         if (Wardrobe::identifierOf(*getChild(child)) == identifier) removeChild(child);
     useOutfit(Wardrobe::withoutUnused(_controller->sharedSet(), *this));
-    _wardrobe->forgetUnworn();
     return {};
 }
 

@@ -160,17 +160,19 @@ Result<void> OutfitMeshes::check(const osg::Group& crowd, const AnimationSet& se
             if (!(scale[axis] >= 0.1f && scale[axis] <= 10.0f))
                 return Error{subject + "the scale of joint \"" + joint + "\" is not in [0.1, 10]"};
     }
-    const std::vector<std::string> names(materials.begin(), materials.end());
+    const auto unknown = [&](const std::string& material)
+    {
+        return Error{subject + "there is no material \"" + material + "\"; the materials are " +
+                     quotedNames(std::vector<std::string>(materials.begin(), materials.end()))};
+    };
     for (const auto& [material, color] : outfit->getColors())
     {
-        if (const auto known = indexNamed("material", material, names); !known)
-            return Error{subject + known.error().message};
+        if (materials.count(material) == 0) return unknown(material);
         if (!isColor(color)) return Error{subject + "the colour of \"" + material + "\" is not in [0, 1]"};
     }
     for (const auto& [material, picture] : outfit->getPictures())
     {
-        if (const auto known = indexNamed("material", material, names); !known)
-            return Error{subject + known.error().message};
+        if (materials.count(material) == 0) return unknown(material);
         if (!picture || !picture->valid()) return Error{subject + "the picture of \"" + material + "\" is empty"};
     }
     return {};

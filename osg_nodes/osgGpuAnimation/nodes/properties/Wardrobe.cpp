@@ -213,21 +213,30 @@ bool Wardrobe::exist(const ObservedMeshes& known)
     return std::all_of(known.begin(), known.end(), [](const auto& mesh) { return mesh.valid(); });
 }
 
-void Wardrobe::forgetUnworn()
+bool Wardrobe::Fitting::restore(FittedGarment& out) const
 {
-    const auto isUnworn = [](const Fitting& known) { return known.meshes.front()->referenceCount() == 1; };
-    const std::lock_guard<std::mutex> lock(_mutex);
-    _fittings.erase(std::remove_if(_fittings.begin(), _fittings.end(), isUnworn), _fittings.end());
+    out = fitted;
+    out.set = set.lock();
+    for (const osg::observer_ptr<SkinnedGeometry>& mesh : meshes)
+    {
+        osg::ref_ptr<SkinnedGeometry> present;
+        if (!mesh.lock(present)) return false;
+        out.meshes.push_back(present);
+    }
+    return out.set != nullptr;
 }
 
 Result<FittedGarment> Wardrobe::fit(const AnimationSet& set, const Meshes& meshes,
                                     const std::shared_ptr<const AnimationSet>& body)
 {
-    forgetUnworn();
     const std::lock_guard<std::mutex> lock(_mutex);
-    for (const Fitting& known : _fittings)
-        if (const auto present = known.set.lock(); present && known.body.lock() == body)
-            if (areSame(known.sources, meshes)) return FittedGarment{known.worn, present, known.meshes};
+    for (auto known = _fittings.begin(); known != _fittings.end();)
+    {
+        FittedGarment fitted;
+        const bool exists = known->restore(fitted);
+        if (exists && areSame(known->sources, meshes) && known->body.lock() == body) return fitted;
+        known = exists ? std::next(known) : _fittings.erase(known);
+    }
     const Fitter fitter(set, meshes, *body);
     Result<FittedGarment> made = fitter.fit(body);
     if (!made) return made;
@@ -243,7 +252,11 @@ Result<FittedGarment> Wardrobe::fit(const AnimationSet& set, const Meshes& meshe
         setMorphs(*mesh, *source, set, fitted);
         fitted.meshes.push_back(mesh);
     }
-    _fittings.push_back({{meshes.begin(), meshes.end()}, body, fitted.set, fitted, fitted.meshes});
+    _fittings.push_back({{meshes.begin(), meshes.end()},
+                         body,
+                         fitted.set,
+                         {fitted.meshes.begin(), fitted.meshes.end()},
+                         {fitted, nullptr, {}}});
     return fitted;
 }
 

@@ -38,8 +38,6 @@ public:
     /// Errors: see AnimatedCharacter::wear().
     Result<FittedGarment> fit(const AnimationSet& set, const Meshes& meshes,
                               const std::shared_ptr<const AnimationSet>& body);
-    /// Frees garments that nobody wears any more; fit() does so, too.
-    void forgetUnworn();
     /// The identifier of a garment, as for fit().
     static std::string identifierOf(const AnimationSet& set, const Meshes& meshes);
     /// That of the garment of a worn mesh. Empty: the mesh is the body's own.
@@ -58,8 +56,10 @@ private:
     {
         ObservedMeshes sources;
         std::weak_ptr<const AnimationSet> body, set;
-        WornGarment worn;
-        std::vector<osg::ref_ptr<SkinnedGeometry>> meshes;
+        std::vector<osg::observer_ptr<SkinnedGeometry>> meshes;
+        FittedGarment fitted; ///< without set and meshes
+
+        bool restore(FittedGarment& out) const; ///< false: something no longer exists
     };
     struct Outfit
     {

@@ -8,12 +8,14 @@ mat3x4 fetchMatrix(samplerBuffer source, int texel)
     return mat3x4(texelFetch(source, texel), texelFetch(source, texel + 1), texelFetch(source, texel + 2));
 }
 
-// Numbers beyond POSE_LARGEST_NUMBER are limited, so products of limited matrices have no infinite terms.
+// Numbers beyond POSE_LARGEST_NUMBER are limited, so products of limited matrices have no infinite terms. bool hasLimits:
+// a constant of the variant; false if the numbers of the batch cannot become so large.
 mat3x4 limited(mat3x4 matrix)
 {
     const vec4 largest = vec4(POSE_LARGEST_NUMBER);
-    return mat3x4(clamp(matrix[0], -largest, largest), clamp(matrix[1], -largest, largest),
-                  clamp(matrix[2], -largest, largest));
+    return hasLimits ? mat3x4(clamp(matrix[0], -largest, largest), clamp(matrix[1], -largest, largest),
+                              clamp(matrix[2], -largest, largest))
+                     : matrix;
 }
 
 vec4 withoutNan(vec4 row)
@@ -24,7 +26,7 @@ vec4 withoutNan(vec4 row)
 // A local matrix, in which what is no number becomes 0.
 mat3x4 limitedLocal(mat3x4 matrix)
 {
-    return limited(mat3x4(withoutNan(matrix[0]), withoutNan(matrix[1]), withoutNan(matrix[2])));
+    return hasLimits ? limited(mat3x4(withoutNan(matrix[0]), withoutNan(matrix[1]), withoutNan(matrix[2]))) : matrix;
 }
 
 // a * b of affine matrices stored by rows.

@@ -282,15 +282,19 @@ protected:
     /// Links the pose passes of both forms, each pair of a variant's members at least once.
     void linkPosePasses()
     {
-        for (const std::vector<int>& row : pairwise({2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 5, 3, 3}))
+        for (const std::vector<int>& row : pairwise({2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 5, 3, 3}))
         {
             ConstraintShape shape;
             PoseVariant variant;
-            bool* const flags[] = {
-                &variant.hasSplines,   &variant.hasSeveralSamples, &variant.hasWeights,     &variant.isRootLevel,
-                &variant.hasRoots,     &variant.hasLayers,         &variant.hasMasks,       &variant.hasAdditive,
-                &variant.hasExactKeys, &variant.hasCompactKeys,    &variant.hasCorrections, &shape.hasSources,
-                &shape.hasCone,        &shape.hasOffset,           &shape.hasDirections,    &shape.hasFractions};
+            bool* const flags[] = {&variant.hasSplines,     &variant.hasSeveralSamples,
+                                   &variant.hasWeights,     &variant.isRootLevel,
+                                   &variant.hasRoots,       &variant.hasLayers,
+                                   &variant.hasMasks,       &variant.hasAdditive,
+                                   &variant.hasExactKeys,   &variant.hasCompactKeys,
+                                   &variant.hasCorrections, &variant.hasLimits,
+                                   &shape.hasSources,       &shape.hasCone,
+                                   &shape.hasOffset,        &shape.hasDirections,
+                                   &shape.hasFractions};
             std::size_t i = 0;
             for (bool* flag : flags)
                 *flag = row[i++] != 0;

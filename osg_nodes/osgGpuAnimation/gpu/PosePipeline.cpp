@@ -92,7 +92,7 @@ bool evaluateSeparately(EvaluationContext& context, FeedbackScope& scope, const 
         ++context.draws;
     };
 
-    PoseVariant variant = PoseVariant::of(batch);
+    PoseVariant variant = PoseVariant::of(batch, buffers.isModest());
     variant.setMotion(buffers.anyTrack());
     variant.translationMotion = std::max(variant.translationMotion, PartMotion::Constant);
     variant.scaleMotion = std::max(variant.scaleMotion, PartMotion::Constant);

@@ -140,4 +140,28 @@ std::vector<TransformBound> boundsOfEntries(const AnimationSet& set)
     return entries;
 }
 
+bool hasModestPalette(const AnimationSet& set)
+{
+    // Joints of several clips may meet in one pose.
+    std::vector<TransformBound> locals = localsAtRest(set.skeleton());
+    for (const Clip& clip : set.clips())
+        addClip(clip, locals);
+    const std::vector<TransformBound> toModel = chained(set.skeleton(), locals);
+    // As world.glsl multiplies: parentEntry * (parentBind * (local * inverseBind)).
+    for (const PaletteEntry& entry : set.palette())
+    {
+        if (entry.joint < 0) continue;
+        TransformBound inner = boundOf(entry.inverseBind), above;
+        if (entry.track >= 0) inner = locals[entry.joint] * inner;
+        const TransformBound outer = boundOf(entry.parentBind) * inner;
+        if (entry.parent >= 0)
+        {
+            const PaletteEntry& parent = set.palette()[entry.parent];
+            above = toModel[parent.joint] * boundOf(parent.inverseBind);
+        }
+        if (!inner.fits() || !outer.fits() || !(above * outer).fits()) return false;
+    }
+    return true;
+}
+
 } // namespace osgGpuAnimation

@@ -44,4 +44,9 @@ std::string outOfRangeText();
 /// One per palette entry, over the rest pose and all clips; 0 for entries of weights.
 std::vector<TransformBound> boundsOfEntries(const AnimationSet& set);
 
+/// True if the shaders compute finite palettes of the set without limiting products (see POSE_LARGEST_NUMBER), in all
+/// mixes of its rest pose and clips, with root matrices of numbers up to `maxNumber`. Posed joints and additive layers
+/// are not part of it. Reads all keyframes.
+bool hasModestPalette(const AnimationSet& set);
+
 } // namespace osgGpuAnimation

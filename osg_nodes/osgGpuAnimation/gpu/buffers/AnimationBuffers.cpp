@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/gpu/buffers/AnimationBuffers.h>
 
+#include <osgGpuAnimation/animation/bounds/TransformBound.h>
+
 #include <layout.glsl>
 
 #include <algorithm>
@@ -54,8 +56,8 @@ void widen(PackedKeyframes::Track& all, const PackedKeyframes::Track& one)
 } // namespace
 
 AnimationBuffers::AnimationBuffers(osg::GLExtensions& gl, const AnimationSet& set, const PackedKeyframes& keyframes)
-    : _gl(&gl), _restTexel(keyframes.restTexel()), _levels(set.levelCount()), _keyframes(gl, GL_RGBA32UI_EXT),
-      _entries(gl, GL_RGBA32F_ARB), _masks(gl, GL_RGBA32F_ARB)
+    : _gl(&gl), _restTexel(keyframes.restTexel()), _levels(set.levelCount()), _isModest(hasModestPalette(set)),
+      _keyframes(gl, GL_RGBA32UI_EXT), _entries(gl, GL_RGBA32F_ARB), _masks(gl, GL_RGBA32F_ARB)
 {
     _keyframes.upload(keyframes.texels().data(), keyframes.byteSize());
     for (const PackedKeyframes::Track& track : keyframes.tracks())

@@ -25,6 +25,7 @@ public:
     const std::vector<PackedKeyframes::Track>& levels() const { return _levels; }
     /// The moving parts of all tracks together.
     const PackedKeyframes::Track& anyTrack() const { return _anyTrack; }
+    bool isModest() const { return _isModest; } ///< see hasModestPalette()
     /// RGBA32F: set.paletteSize() entries of POSE_TEXELS_PER_ENTRY texels.
     const BufferTexture& entries() const { return _entries; }
 
@@ -48,6 +49,7 @@ private:
     std::size_t _restTexel;
     std::vector<PackedKeyframes::Track> _levels;
     PackedKeyframes::Track _anyTrack;
+    bool _isModest;
     BufferTexture _keyframes;
     BufferTexture _entries;
     BufferTexture _masks;

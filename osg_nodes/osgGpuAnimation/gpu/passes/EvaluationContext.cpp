@@ -20,11 +20,12 @@ FeedbackPass& EvaluationContext::pass(Stage stage, const PoseVariant& variant, c
     std::unique_ptr<FeedbackPass>& pass = _passes[{stage, variant, shape}];
     if (pass) return *pass;
     const std::vector<const char*> rows{"row0", "row1", "row2"};
+    const char* const limits = "const bool hasLimits = true;\n";
     if (stage == Stage::Pose) pass = variant.makePosePass(*gl);
     if (stage == Stage::Constrain) pass = variant.makeConstraintPass(*gl, shape);
     if (stage == Stage::Mix) pass = variant.makeMixPass(*gl);
     if (stage == Stage::Local) pass.reset(new FeedbackPass(*gl, "local", {local_glsl, local_vert}, rows));
-    if (stage == Stage::World) pass.reset(new FeedbackPass(*gl, "world", {world_glsl, world_vert}, rows));
+    if (stage == Stage::World) pass.reset(new FeedbackPass(*gl, "world", {limits, world_glsl, world_vert}, rows));
     return *pass;
 }
 

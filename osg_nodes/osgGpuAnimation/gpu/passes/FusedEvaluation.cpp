@@ -16,7 +16,7 @@ FusedEvaluation::FusedEvaluation(EvaluationContext& context, FeedbackScope& scop
       _chunk(chunk),
       _constraints(batch.needs().constraints != 0 ? &buffers.constraints(batch.set(), batch.needs().constraints)
                                                   : nullptr),
-      _garmentEntries(_set.paletteSize() - _set.levels().back()), _variant(PoseVariant::of(batch))
+      _garmentEntries(_set.paletteSize() - _set.levels().back()), _variant(PoseVariant::of(batch, buffers.isModest()))
 {
     for (std::size_t level = 0; level < _set.levelCount(); ++level)
     {

@@ -51,7 +51,7 @@ std::string ConstraintShape::constants() const
            declaration("hasFractions", hasFractions);
 }
 
-PoseVariant PoseVariant::of(const PoseBatch& batch)
+PoseVariant PoseVariant::of(const PoseBatch& batch, bool isModest)
 {
     const std::vector<Clip>& clips = batch.set().clips();
     PoseVariant variant;
@@ -65,6 +65,7 @@ PoseVariant PoseVariant::of(const PoseBatch& batch)
     variant.hasMasks = batch.needs().masks;
     variant.hasAdditive = batch.needs().additive;
     variant.hasPosed = batch.needs().posed;
+    variant.hasLimits = !isModest || variant.hasPosed || variant.hasAdditive;
     return variant;
 }
 
@@ -114,7 +115,8 @@ std::string PoseVariant::constants() const
            declaration("hasRoots", hasRoots) + declaration("hasLayers", hasLayers) + declaration("hasMasks", hasMasks) +
            declaration("hasAdditive", hasAdditive) + declaration("hasPosed", hasPosed) +
            declaration("hasExactKeys", hasExactKeys) + declaration("hasCompactKeys", hasCompactKeys) +
-           declaration("hasCorrections", hasCorrections) + declaration("sampleCount", sampleCount) +
+           declaration("hasCorrections", hasCorrections) + declaration("hasLimits", hasLimits) +
+           declaration("sampleCount", sampleCount) +
            declaration("translationMotion", static_cast<int>(translationMotion)) +
            declaration("scaleMotion", static_cast<int>(scaleMotion));
 }
@@ -123,7 +125,7 @@ unsigned int PoseVariant::key() const
 {
     unsigned int key = 0;
     for (const bool has : {hasSplines, hasSeveralSamples, hasWeights, isRootLevel, hasRoots, hasLayers, hasMasks,
-                           hasAdditive, hasPosed, hasExactKeys, hasCompactKeys, hasCorrections})
+                           hasAdditive, hasPosed, hasExactKeys, hasCompactKeys, hasCorrections, hasLimits})
         key = 2 * key + (has ? 1 : 0);
     key = key * (POSE_SAMPLES_AS_ATTRIBUTES + 1) + static_cast<unsigned int>(sampleCount);
     return (4 * key + static_cast<unsigned int>(translationMotion)) * 4 + static_cast<unsigned int>(scaleMotion);

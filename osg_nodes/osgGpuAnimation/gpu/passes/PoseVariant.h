@@ -61,12 +61,13 @@ struct PoseVariant
     bool hasExactKeys = false;      ///< some exact clip moves some of the tracks
     bool hasCompactKeys = false;    ///< some compact clip moves some of the tracks
     bool hasCorrections = false;    ///< constraints have corrected the rotations of all entries
+    bool hasLimits = false;         ///< products are limited, see POSE_LARGEST_NUMBER
     int sampleCount = 0; ///< blend samples of an instance, if they are attributes; 0: the shader fetches them
     PartMotion translationMotion = PartMotion::Constant; ///< the largest of any track in any clip
     PartMotion scaleMotion = PartMotion::Constant;
 
-    /// The features that the batch needs, for constant tracks.
-    static PoseVariant of(const PoseBatch& batch);
+    /// The features that the batch needs, for constant tracks. isModest: see hasModestPalette().
+    static PoseVariant of(const PoseBatch& batch, bool isModest);
     /// Sets the motion of the tracks.
     void setMotion(const PackedKeyframes::Track& motion);
 

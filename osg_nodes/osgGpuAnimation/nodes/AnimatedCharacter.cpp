@@ -139,9 +139,9 @@ Result<WornGarment> AnimatedCharacter::wear(osg::Node* garment)
     if (!source || source == this) return Error{"the garment has no animated character"};
     const std::vector<const SkinnedGeometry*> meshes = wornMeshes(*source);
     if (meshes.empty()) return Error{"the garment has no meshes that joints move"};
-    if (wears(Wardrobe::identifierOf(source->getAnimationSet(), meshes)))
-        return Error{"the character wears the garment already"};
-    const Result<FittedGarment> fitted = _wardrobe->fit(source->getAnimationSet(), meshes, _controller->sharedSet());
+    if (wears(_wardrobe->identifierOf(*source, meshes))) return Error{"the character wears the garment already"};
+    const Result<FittedGarment> fitted =
+        _wardrobe->fit(*source, source->getAnimationSet(), meshes, _controller->sharedSet());
     if (!fitted) return fitted.error();
     for (const osg::ref_ptr<SkinnedGeometry>& mesh : fitted.value().meshes)
         addChild(mesh);
@@ -162,8 +162,8 @@ Result<void> AnimatedCharacter::takeOff(const osg::Node* garment)
 {
     if (!garment) return Error{"there is no garment to take off"};
     AnimatedCharacter* source = findCharacter(const_cast<osg::Node&>(*garment));
-    const std::string identifier = source ? Wardrobe::identifierOf(source->getAnimationSet(), wornMeshes(*source))
-                                          : Wardrobe::identifierOf(*garment);
+    const std::string identifier =
+        source ? _wardrobe->identifierOf(*source, wornMeshes(*source)) : Wardrobe::identifierOf(*garment);
     if (!wears(identifier))
     {
         std::vector<std::string> worn;

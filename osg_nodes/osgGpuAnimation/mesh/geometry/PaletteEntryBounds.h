@@ -28,48 +28,38 @@ inline osg::BoundingBox toOsg(const Box& box)
     return {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z};
 }
 
-/// function(osg::Node&), for every node at or below the node, hidden ones included; not for characters and crowds below
-/// a character or crowd, as a rider is below a horse. isInSource: the node is below one. See SceneVisitor for broken
-/// scenes.
+/// function(SkinnedGeometry&), for every mesh at or below the node, hidden ones included; not those of characters and
+/// crowds below a character or crowd, as a rider is below a horse. See SceneVisitor for broken scenes.
 template <typename Function>
-void forEachNodeBelow(osg::Node& node, bool isInSource, Function function)
+void forEachMeshBelow(osg::Node& node, Function function)
 {
     class Visitor : public SceneVisitor
     {
     public:
         using SceneVisitor::apply;
-        Visitor(Function& function, bool isInSource)
-            : SceneVisitor(Shared::Once, TRAVERSE_ALL_CHILDREN), _function(function), _isInSource(isInSource)
+        explicit Visitor(Function& function) : SceneVisitor(Shared::Once, TRAVERSE_ALL_CHILDREN), _function(function)
         {
             setNodeMaskOverride(~0u); // a mesh that is hidden now may be shown later
         }
-        void apply(osg::Node& each) override
+        void apply(osg::Group& group) override
         {
-            const bool isSource = each.asGroup() && dynamic_cast<PosedMeshSource*>(&each);
+            const bool isSource = dynamic_cast<PosedMeshSource*>(&group) != nullptr;
             if (isSource && _isInSource) return;
             const bool before = std::exchange(_isInSource, _isInSource || isSource);
-            _function(each);
-            traverse(each);
+            traverse(group);
             _isInSource = before;
+        }
+        void apply(osg::Drawable& drawable) override
+        {
+            if (auto* mesh = dynamic_cast<SkinnedGeometry*>(&drawable)) _function(*mesh);
         }
 
     private:
         Function& _function;
-        bool _isInSource;
+        bool _isInSource = false;
     };
-    Visitor visitor(function, isInSource);
+    Visitor visitor(function);
     node.accept(visitor);
-}
-
-/// function(SkinnedGeometry&), for every mesh among them.
-template <typename Function>
-void forEachMeshBelow(osg::Node& node, Function function)
-{
-    forEachNodeBelow(node, false,
-                     [&](osg::Node& each)
-                     {
-                         if (auto* mesh = dynamic_cast<SkinnedGeometry*>(&each)) function(*mesh);
-                     });
 }
 
 /// function(const SkinnedGeometry&), for every mesh among the children of the group, and for the most detailed level of

@@ -7,7 +7,9 @@
 #include <osgGpuAnimation/looks/shading/PunctualLight.h>
 #include <osgGpuAnimation/mesh/geometry/MaterialVariants.h>
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
+#include <osgGpuAnimation/mesh/PosedMeshSource.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
+#include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
 #include <osg/Drawable>
 #include <osg/LOD>
@@ -108,16 +110,38 @@ osg::Light* shownLight(osg::Light& light)
 
 /// Calls visit for the lights and camera views at and below a node, but for those of other characters below.
 template <typename Visit>
+class MarkedNodes : public SceneVisitor
+{
+public:
+    using SceneVisitor::apply;
+    explicit MarkedNodes(Visit visit) : SceneVisitor(Shared::Once, TRAVERSE_ALL_CHILDREN), _visit(std::move(visit))
+    {
+        setNodeMaskOverride(~0u);
+    }
+    void apply(osg::Group& group) override
+    {
+        if (!dynamic_cast<PosedMeshSource*>(&group)) traverse(group);
+    }
+    void apply(osg::LightSource& source) override
+    {
+        if (markOf(source, lightMark) || !visibilityOf(source).empty()) _visit(source);
+        traverse(source);
+    }
+    void apply(osg::CameraView& view) override
+    {
+        if (markOf(view, cameraMark)) _visit(view);
+        traverse(view);
+    }
+
+private:
+    Visit _visit;
+};
+
+template <typename Visit>
 void forEachMarked(osg::Node& node, Visit visit)
 {
-    const auto visitMarked = [&](osg::Node& each)
-    {
-        const bool isLight = dynamic_cast<osg::LightSource*>(&each) != nullptr;
-        if (isLight ? markOf(each, lightMark) || !visibilityOf(each).empty()
-                    : dynamic_cast<osg::CameraView*>(&each) && markOf(each, cameraMark))
-            visit(each);
-    };
-    forEachNodeBelow(node, true, visitMarked);
+    MarkedNodes<Visit> visitor(std::move(visit));
+    node.accept(visitor);
 }
 
 } // namespace

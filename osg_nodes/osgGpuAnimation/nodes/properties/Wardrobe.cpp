@@ -11,7 +11,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <random>
+#include <sstream>
 
 namespace osgGpuAnimation
 {
@@ -188,6 +189,14 @@ void setMorphs(SkinnedGeometry& mesh, const SkinnedGeometry& source, const Anima
     addOnce(fitted.leftOut, morph.name);
 }
 
+std::string randomIdentifier()
+{
+    std::random_device random;
+    std::ostringstream text;
+    text << std::hex << random() << '-' << random();
+    return text.str();
+}
+
 /// The mesh gets user data of its own: VariantMeshes tells meshes apart by it.
 void setIdentifier(SkinnedGeometry& mesh, const std::string& identifier)
 {
@@ -226,22 +235,24 @@ bool Wardrobe::Fitting::restore(FittedGarment& out) const
     return out.set != nullptr;
 }
 
-Result<FittedGarment> Wardrobe::fit(const AnimationSet& set, const Meshes& meshes,
+Result<FittedGarment> Wardrobe::fit(const osg::Node& garment, const AnimationSet& set,
+                                    const std::vector<const SkinnedGeometry*>& meshes,
                                     const std::shared_ptr<const AnimationSet>& body)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
+    const std::string identifier = identifierFor(garment, meshes);
     for (auto known = _fittings.begin(); known != _fittings.end();)
     {
         FittedGarment fitted;
         const bool exists = known->restore(fitted);
-        if (exists && areSame(known->sources, meshes) && known->body.lock() == body) return fitted;
+        if (exists && known->identifier == identifier && areSame(known->sources, meshes) && known->body.lock() == body)
+            return fitted;
         known = exists ? std::next(known) : _fittings.erase(known);
     }
     const Fitter fitter(set, meshes, *body);
     Result<FittedGarment> made = fitter.fit(body);
     if (!made) return made;
     FittedGarment fitted = made.value();
-    const std::string identifier = identifierOf(set, meshes);
     UnanimatedMeshes unanimated(set);
     for (const SkinnedGeometry* source : meshes)
     {
@@ -252,7 +263,8 @@ Result<FittedGarment> Wardrobe::fit(const AnimationSet& set, const Meshes& meshe
         setMorphs(*mesh, *source, set, fitted);
         fitted.meshes.push_back(mesh);
     }
-    _fittings.push_back({{meshes.begin(), meshes.end()},
+    _fittings.push_back({identifier,
+                         {meshes.begin(), meshes.end()},
                          body,
                          fitted.set,
                          {fitted.meshes.begin(), fitted.meshes.end()},
@@ -260,20 +272,28 @@ Result<FittedGarment> Wardrobe::fit(const AnimationSet& set, const Meshes& meshe
     return fitted;
 }
 
-// Equal meshes of different joints, such as a pair of rings, are different garments.
-std::string Wardrobe::identifierOf(const AnimationSet& set, const Meshes& meshes)
+const Wardrobe::Garment* Wardrobe::find(const osg::Node& garment, const Meshes& meshes) const
 {
-    std::string content;
-    for (const Joint& joint : set.skeleton().joints())
-        content += joint.name + '\n';
-    for (const SkinnedGeometry* mesh : meshes)
-    {
-        const osg::Array* vertices = mesh->getVertexArray();
-        if (!vertices || !identifierOf(*mesh).empty()) continue; // of a garment that the garment wears
-        content += mesh->getName() + '\n' + std::to_string(mesh->getRigidEntry()) + '\n';
-        content.append(static_cast<const char*>(vertices->getDataPointer()), vertices->getTotalDataSize());
-    }
-    return std::to_string(std::hash<std::string>()(content));
+    const auto isIt = [&](const Garment& known)
+    { return known.node.get() == &garment || areSame(known.meshes, meshes); };
+    const auto known = std::find_if(_garments.begin(), _garments.end(), isIt);
+    return known == _garments.end() ? nullptr : &*known;
+}
+
+std::string Wardrobe::identifierFor(const osg::Node& garment, const Meshes& meshes)
+{
+    if (const Garment* known = find(garment, meshes)) return known->identifier;
+    const auto isGone = [](const Garment& known) { return !known.node.valid() && !exist(known.meshes); };
+    _garments.erase(std::remove_if(_garments.begin(), _garments.end(), isGone), _garments.end());
+    _garments.push_back({&garment, {meshes.begin(), meshes.end()}, randomIdentifier()});
+    return _garments.back().identifier;
+}
+
+std::string Wardrobe::identifierOf(const osg::Node& garment, const Meshes& meshes) const
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    const Garment* known = find(garment, meshes);
+    return known ? known->identifier : "";
 }
 
 std::string Wardrobe::identifierOf(const osg::Object& mesh)

@@ -6,6 +6,7 @@
 #include <osgGpuAnimation/nodes/WornGarment.h>
 
 #include <osg/Group>
+#include <osg/Node>
 #include <osg/observer_ptr>
 
 #include <memory>
@@ -26,20 +27,20 @@ struct FittedGarment : WornGarment
 /// The garments that a character and its clones wear. Characters that wear the same garment share its meshes, and the
 /// set if it has further palette entries, so that they are posed and drawn together. Safe to use from several threads.
 ///
-/// Garments are the same if their joints have the same names and their meshes the same names and vertices, as those of
-/// clones. A hash of them is the identifier, a user value of the worn meshes: OSG's own serializers store it, so
-/// characters of stored scenes know which meshes belong together.
+/// A garment is a node, and whatever has the same meshes: clones of the node. Its identifier is a random text, a user
+/// value of its worn meshes: OSG's own serializers store it, so characters of stored scenes know which meshes belong
+/// together.
 class Wardrobe
 {
 public:
     using Meshes = std::vector<const SkinnedGeometry*>;
 
-    /// set, meshes: the garment's. body: the set of the body with the garments that it wears already.
+    /// garment: its node. set, meshes: its own. body: the set of the body with the garments that it wears already.
     /// Errors: see AnimatedCharacter::wear().
-    Result<FittedGarment> fit(const AnimationSet& set, const Meshes& meshes,
+    Result<FittedGarment> fit(const osg::Node& garment, const AnimationSet& set, const Meshes& meshes,
                               const std::shared_ptr<const AnimationSet>& body);
-    /// The identifier of a garment, as for fit().
-    static std::string identifierOf(const AnimationSet& set, const Meshes& meshes);
+    /// The identifier of a garment, as for fit(). Empty: nobody has worn it.
+    std::string identifierOf(const osg::Node& garment, const Meshes& meshes) const;
     /// That of the garment of a worn mesh. Empty: the mesh is the body's own.
     static std::string identifierOf(const osg::Object& mesh);
 
@@ -52,8 +53,15 @@ public:
 private:
     using ObservedMeshes = std::vector<osg::observer_ptr<const SkinnedGeometry>>;
 
+    struct Garment
+    {
+        osg::observer_ptr<const osg::Node> node;
+        ObservedMeshes meshes;
+        std::string identifier;
+    };
     struct Fitting
     {
+        std::string identifier; ///< of the garment
         ObservedMeshes sources;
         std::weak_ptr<const AnimationSet> body, set;
         std::vector<osg::observer_ptr<SkinnedGeometry>> meshes;
@@ -70,8 +78,11 @@ private:
 
     static bool areSame(const ObservedMeshes& known, const Meshes& meshes);
     static bool exist(const ObservedMeshes& known);
+    const Garment* find(const osg::Node& garment, const Meshes& meshes) const;
+    std::string identifierFor(const osg::Node& garment, const Meshes& meshes);
 
-    std::mutex _mutex;
+    mutable std::mutex _mutex;
+    std::vector<Garment> _garments;
     std::vector<Fitting> _fittings;
     std::vector<Outfit> _outfits;
 };

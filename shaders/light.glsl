@@ -30,7 +30,7 @@ vec3 givenNormal;
 
 // The state of the fixed pipeline: of GL, or in a core profile by uniforms, see ViewLights.
 #if DRAW_FIXED_PIPELINE
-#define lightSource gl_LightSource
+#define lightSource(index) gl_LightSource[index]
 #define lightModelAmbient gl_LightModel.ambient
 #define shineColor gl_FrontMaterial.specular
 #define shininess gl_FrontMaterial.shininess
@@ -53,21 +53,28 @@ struct LightSource
     float linearAttenuation;
     float quadraticAttenuation;
 };
-uniform LightSource coreLights[8];
-uniform vec4 coreAmbient;  // osg::LightModel's
-uniform vec4 coreShine;    // the specular colour, the shininess
-uniform vec4 coreFogColor;
-uniform vec4 coreFogRange; // density, start, end, 1 / (end - start)
+// osg::LightModel's ambient colour; the specular colour and the shininess; the colour of the fog; its density, start, end,
+// 1 / (end - start); then of each light: ambient, diffuse, specular, position, spot direction and exponent, cutoff and
+// attenuations.
+uniform vec4 coreState[4 + 6 * 8];
+
+LightSource coreLight(int index)
+{
+    int first = 4 + 6 * index;
+    vec4 spot = coreState[first + 4], last = coreState[first + 5];
+    return LightSource(coreState[first], coreState[first + 1], coreState[first + 2], coreState[first + 3], spot.xyz, spot.w,
+                       last.x, cos(radians(last.x)), last.y, last.z, last.w);
+}
 #undef DRAW_SHADOW_MAPS
 #define DRAW_SHADOW_MAPS 0 // osgShadow's have generated texture coordinates
-#define lightSource coreLights
-#define lightModelAmbient coreAmbient
-#define shineColor coreShine
-#define shininess coreShine.a
-#define fogColor coreFogColor
-#define fogDensity coreFogRange.x
-#define fogEnd coreFogRange.z
-#define fogScale coreFogRange.w
+#define lightSource(index) coreLight(index)
+#define lightModelAmbient coreState[0]
+#define shineColor coreState[1]
+#define shininess coreState[1].a
+#define fogColor coreState[2]
+#define fogDensity coreState[3].x
+#define fogEnd coreState[3].z
+#define fogScale coreState[3].w
 #endif
 
 #ifdef MATERIAL_PBR
@@ -87,15 +94,15 @@ vec3 surfaceColor(Surface surface, vec3 direct, vec3 ambient, float occlusion)
 // The direction to the light, and its attenuation (OpenGL 2.1, section 2.14.1).
 vec3 directionTo(int index, out float strength)
 {
-    vec4 position = lightSource[index].position;
+    vec4 position = lightSource(index).position;
     strength = 1.0;
     if ((DRAW_POINT_LIGHTS & (1 << index)) == 0) return normalize(position.xyz);
     vec3 way = position.xyz / position.w - viewPosition;
     float range = length(way);
     vec3 toLight = way / range;
-    strength = 1.0 / (lightSource[index].constantAttenuation + lightSource[index].linearAttenuation * range +
-                      lightSource[index].quadraticAttenuation * range * range);
-    float along = dot(-toLight, normalize(lightSource[index].spotDirection));
+    strength = 1.0 / (lightSource(index).constantAttenuation + lightSource(index).linearAttenuation * range +
+                      lightSource(index).quadraticAttenuation * range * range);
+    float along = dot(-toLight, normalize(lightSource(index).spotDirection));
 #ifdef MATERIAL_PBR
     if ((DRAW_PUNCTUAL_LIGHTS & (1 << index)) != 0)
     {
@@ -106,10 +113,10 @@ vec3 directionTo(int index, out float strength)
         return toLight;
     }
 #endif
-    if (lightSource[index].spotCutoff < 180.0) // the cosine is 0 in Mesa for 180 degrees
-        strength *= along < lightSource[index].spotCosCutoff
+    if (lightSource(index).spotCutoff < 180.0) // the cosine is 0 in Mesa for 180 degrees
+        strength *= along < lightSource(index).spotCosCutoff
                         ? 0.0
-                        : pow(max(along, 0.0001), lightSource[index].spotExponent);
+                        : pow(max(along, 0.0001), lightSource(index).spotExponent);
     return toLight;
 }
 
@@ -125,8 +132,8 @@ void addLight(int index, Surface surface, inout Light sum)
 {
     float strength;
     vec3 toLight = directionTo(index, strength);
-    sum.ambient += strength * lightSource[index].ambient.rgb;
-    sum.direct += strength * lightSource[index].diffuse.rgb * reflectedLight(surface, toLight);
+    sum.ambient += strength * lightSource(index).ambient.rgb;
+    sum.direct += strength * lightSource(index).diffuse.rgb * reflectedLight(surface, toLight);
 }
 
 #else
@@ -143,12 +150,12 @@ void addLight(int index, vec3 normal, inout Light sum)
     float strength;
     vec3 toLight = directionTo(index, strength);
     float diffuse = max(dot(normal, toLight), 0.0);
-    sum.ambient += strength * lightSource[index].ambient.rgb;
-    sum.diffuse += strength * diffuse * lightSource[index].diffuse.rgb;
+    sum.ambient += strength * lightSource(index).ambient.rgb;
+    sum.diffuse += strength * diffuse * lightSource(index).diffuse.rgb;
 #if DRAW_SPECULAR
     vec3 halfway = normalize(toLight - normalize(viewPosition));
     float specular = diffuse > 0.0 ? pow(max(dot(normal, halfway), 0.0), max(shininess, 1.0)) : 0.0;
-    sum.specular += strength * specular * lightSource[index].specular.rgb;
+    sum.specular += strength * specular * lightSource(index).specular.rgb;
 #endif
 }
 

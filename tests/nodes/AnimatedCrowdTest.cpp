@@ -200,7 +200,7 @@ TEST(AnimatedCrowdTest, oneCallbackNamesTheInstances)
     crowd->setInstanceEventCallback({});
     crowd->update(50.0);
     EXPECT_EQ(heard.size(), 2u);
-    EXPECT_EQ(CrowdDetail::instances(*crowd).controllerCount(), 0u) << "plain loops again";
+    EXPECT_EQ(controllerCount(*crowd), 0u) << "plain loops again";
 }
 
 TEST(AnimatedCrowdTest, stateMachinesDriveInstances)
@@ -253,7 +253,7 @@ TEST(AnimatedCrowdTest, compactPlaybackKeepsTheControllersTime)
                 ASSERT_EQ(shown.keyframe, expected.keyframe) << frame;
                 ASSERT_NEAR(shown.alpha, expected.alpha, 1e-6) << frame;
             }
-            EXPECT_EQ(CrowdDetail::instances(*crowd).controllerCount(), 0u);
+            EXPECT_EQ(controllerCount(*crowd), 0u);
             EXPECT_NEAR(crowd->getController(instance)->time(), controller.time(), 1e-9);
             EXPECT_EQ(crowd->getController(instance)->state(), controller.state());
             EXPECT_EQ(crowd->getController(instance)->layer(0).settings().speed, controller.layer(0).settings().speed);
@@ -371,7 +371,7 @@ TEST(AnimatedCrowdTest, boundsHoldWhateverAControllerMayPlay)
     crowd->update(0.25);
     EXPECT_TRUE(holds(shifted));
     crowd->update(1.0);
-    ASSERT_EQ(CrowdDetail::instances(*crowd).controllerCount(), 0u);
+    ASSERT_EQ(controllerCount(*crowd), 0u);
     EXPECT_TRUE(holds(shifted));
     EXPECT_FALSE(holds({0, 0, -1})) << "the former clip's";
     EXPECT_LT(crowd->getBound().radius(), 10.0);

@@ -160,7 +160,7 @@ TEST(NodeConstraintsTest, instancesOfACrowdHaveTargetsOfTheirOwn)
     crowd->update(0.2);
     ASSERT_TRUE(crowd->constraint(first, "look").clear());
     crowd->update(0.3);
-    EXPECT_EQ(CrowdDetail::instances(*crowd).controllerCount(), 0u);
+    EXPECT_EQ(controllerCount(*crowd), 0u);
 }
 
 // The Walker's left leg: its file is turned to +Z up, and the person has turned.

@@ -96,8 +96,8 @@ private:
         mesh.computeNormals(palette, normals);
         for (unsigned int i = 0; i < mesh.getNumPrimitiveSets(); ++i)
         {
-            const LodLevels::Reduced reduced = levels ? levels->reduced(i, level) : LodLevels::Reduced();
-            const osg::PrimitiveSet* drawn = reduced.elements ? reduced.elements : mesh.getPrimitiveSet(i);
+            const LodLevels::Step reduced = levels ? levels->reduced(i, level) : LodLevels::Step();
+            const osg::PrimitiveSet* drawn = reduced.elements ? reduced.elements.get() : mesh.getPrimitiveSet(i);
             const std::vector<std::uint32_t> corners = LodLevels::trianglesOf(drawn, positions.size());
             for (std::size_t corner = 0; corner + 2 < corners.size(); corner += 3)
             {

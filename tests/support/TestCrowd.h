@@ -3,7 +3,9 @@
 
 #include "support/TestCharacter.h"
 
+#include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
 
 #include <gtest/gtest.h>
 
@@ -44,6 +46,15 @@ inline osg::ref_ptr<AnimatedCrowd> makeCrowd(const AnimatedCharacter& character,
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(character);
     addInstances(*crowd, places, character.getController());
     return crowd;
+}
+
+/// The number of instances with a controller.
+inline std::size_t controllerCount(const AnimatedCrowd& crowd)
+{
+    std::size_t count = 0;
+    for (std::size_t index = 0; index < crowd.getNumInstances(); ++index)
+        count += CrowdDetail::instances(crowd).hasController(index) ? 1 : 0;
+    return count;
 }
 
 } // namespace osgGpuAnimation

@@ -69,6 +69,41 @@ void FeedbackVertexArrays::release()
     discard();
 }
 
+GLuint linkProgram(osg::GLExtensions& gl, const std::string& name,
+                   std::initializer_list<std::pair<GLenum, std::string>> shaders,
+                   const std::vector<const char*>& outputs)
+{
+    const GLuint program = gl.glCreateProgram();
+    std::string log;
+    const auto fail = [&](const char* step)
+    {
+        OSG_WARN << "osgGpuAnimation: " << name << " does not " << step << ": " << log << std::endl;
+        gl.glDeleteProgram(program);
+        return GLuint(0);
+    };
+    GLint ok = GL_FALSE;
+    for (const auto& [type, source] : shaders)
+    {
+        const GLuint shader = gl.glCreateShader(type);
+        const char* text = source.c_str();
+        gl.glShaderSource(shader, 1, &text, nullptr);
+        gl.glCompileShader(shader);
+        gl.glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);
+        if (!ok) gl.getShaderInfoLog(shader, log);
+        gl.glAttachShader(program, shader);
+        gl.glDeleteShader(shader);
+        if (!ok) return fail("compile");
+    }
+    if (!outputs.empty())
+        gl.glTransformFeedbackVaryings(program, static_cast<GLsizei>(outputs.size()), outputs.data(),
+                                       GL_INTERLEAVED_ATTRIBS);
+    gl.glLinkProgram(program);
+    gl.glGetProgramiv(program, GL_LINK_STATUS, &ok);
+    if (ok) return program;
+    gl.getProgramInfoLog(program, log);
+    return fail("link");
+}
+
 FeedbackPass::FeedbackPass(osg::GLExtensions& gl, const char* name, std::initializer_list<const char*> source,
                            const std::vector<const char*>& outputs)
     : _gl(&gl), _bytesPerVertex(outputs.size() * 4 * sizeof(float))
@@ -77,36 +112,7 @@ FeedbackPass::FeedbackPass(osg::GLExtensions& gl, const char* name, std::initial
     text += shaders::layout_glsl;
     for (const char* part : source)
         text += part;
-    if (!link(name, text, outputs)) release();
-}
-
-bool FeedbackPass::link(const char* name, const std::string& source, const std::vector<const char*>& outputs)
-{
-    const GLuint shader = _gl->glCreateShader(GL_VERTEX_SHADER);
-    const char* text = source.c_str();
-    _gl->glShaderSource(shader, 1, &text, nullptr);
-    _gl->glCompileShader(shader);
-    GLint ok = GL_FALSE;
-    _gl->glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);
-    std::string log;
-    if (!ok)
-    {
-        _gl->getShaderInfoLog(shader, log);
-        OSG_WARN << "osgGpuAnimation: pass " << name << " does not compile: " << log << std::endl;
-        _gl->glDeleteShader(shader);
-        return false;
-    }
-    _program = _gl->glCreateProgram();
-    _gl->glAttachShader(_program, shader);
-    _gl->glDeleteShader(shader);
-    _gl->glTransformFeedbackVaryings(_program, static_cast<GLsizei>(outputs.size()), outputs.data(),
-                                     GL_INTERLEAVED_ATTRIBS);
-    _gl->glLinkProgram(_program);
-    _gl->glGetProgramiv(_program, GL_LINK_STATUS, &ok);
-    if (ok) return true;
-    _gl->getProgramInfoLog(_program, log);
-    OSG_WARN << "osgGpuAnimation: pass " << name << " does not link: " << log << std::endl;
-    return false;
+    _program = linkProgram(gl, std::string("pass ") + name, {{GL_VERTEX_SHADER, text}}, outputs);
 }
 
 FeedbackPass::Uniform& FeedbackPass::find(const char* uniform)

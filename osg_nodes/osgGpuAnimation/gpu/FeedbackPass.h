@@ -12,6 +12,7 @@
 #include <initializer_list>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace osgGpuAnimation
@@ -77,6 +78,12 @@ private:
     std::vector<Names> _names; ///< almost always one
 };
 
+/// A program of these shaders, each a type and its text; 0, with one warning, if it does not compile or link. name: for
+/// the warning. outputs: what transform feedback captures, interleaved.
+GLuint linkProgram(osg::GLExtensions& gl, const std::string& name,
+                   std::initializer_list<std::pair<GLenum, std::string>> shaders,
+                   const std::vector<const char*>& outputs = {});
+
 /// One pass of the pipeline in one graphics context: a vertex shader whose outputs transform feedback captures. Use it
 /// within the lifetime of a FeedbackScope. Uniforms keep their values between frames; only changes are sent.
 ///
@@ -135,7 +142,6 @@ private:
 
     void begin(GLenum mode, std::size_t count, GLuint buffer, std::size_t byteOffset);
     Uniform& find(const char* uniform);
-    bool link(const char* name, const std::string& source, const std::vector<const char*>& outputs);
 
     osg::GLExtensions* _gl;
     GLuint _program = 0;

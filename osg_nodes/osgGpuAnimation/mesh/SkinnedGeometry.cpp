@@ -373,10 +373,10 @@ void SkinnedGeometry::drawPrimitives(osg::State& state, int count, int level) co
     if (level != LodLevels::allTriangles) levels = _lod->known(*this);
     for (std::size_t i = 0; i < _primitives.size(); ++i)
     {
-        const LodLevels::Reduced reduced = levels ? levels->reduced(i, level) : LodLevels::Reduced();
-        setOutset(state, reduced.outset);
-        if (reduced.elements)
-            drawInstanced(state, *reduced.elements, count, usesBuffers);
+        const LodLevels::Step* reduced = levels ? &levels->reduced(i, level) : nullptr;
+        setOutset(state, reduced ? reduced->outset : 0.0f);
+        if (reduced && reduced->elements)
+            drawInstanced(state, *reduced->elements, count, usesBuffers);
         else if (_primitives[i])
             drawInstanced(state, *_primitives[i], count, usesBuffers);
     }

@@ -329,12 +329,6 @@ AnimationController CrowdInstances::controllerCopy(std::size_t index) const
     return _controllers[index] ? *_controllers[index] : _playbacks[index].controller(_set, _clock);
 }
 
-std::size_t CrowdInstances::controllerCount() const
-{
-    return static_cast<std::size_t>(std::count_if(_controllers.begin(), _controllers.end(),
-                                                  [](const auto& controller) { return controller != nullptr; }));
-}
-
 void CrowdInstances::setEventCallback(EventCallback callback)
 {
     _eventCallback = callback ? std::make_shared<const EventCallback>(std::move(callback)) : nullptr;

@@ -117,8 +117,6 @@ public:
     {
         return _controllers[index] ? _controllers[index]->takeRootMotion() : RootMotion();
     }
-    /// The number of instances with a controller.
-    std::size_t controllerCount() const;
     bool hasController(std::size_t index) const { return _controllers[index] != nullptr; }
     double clock() const { return _clock; } ///< seconds; see CrowdMember
     /// Grows with each advance() and move(): the same number, the same joints of instances without a controller.

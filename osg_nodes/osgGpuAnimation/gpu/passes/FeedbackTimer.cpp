@@ -36,26 +36,13 @@ FeedbackTimer& FeedbackTimer::of(osg::State& state)
     return *osg::get<FeedbackTimer>(state.getContextID());
 }
 
-FeedbackTimer::Stamps FeedbackTimer::nextStamps()
-{
-    Stamps stamps{0, 0, 0};
-    if (!_spare.empty())
-    {
-        stamps = _spare.back();
-        _spare.pop_back();
-        return stamps;
-    }
-    _gl->glGenQueries(1, &stamps.begin);
-    _gl->glGenQueries(1, &stamps.end);
-    return stamps;
-}
-
 void FeedbackTimer::begin()
 {
     _isMeasuring = _clockBits > 0 && _inFlight.size() < maxInFlight;
     if (!_isMeasuring) return;
-    _inFlight.push_back(nextStamps());
-    _gl->glQueryCounter(_inFlight.back().begin, GL_TIMESTAMP);
+    Stamps& stamps = _inFlight.emplace_back();
+    _gl->glGenQueries(2, stamps.queries);
+    _gl->glQueryCounter(stamps.queries[0], GL_TIMESTAMP);
 }
 
 void FeedbackTimer::end(unsigned int frameNumber)
@@ -63,7 +50,7 @@ void FeedbackTimer::end(unsigned int frameNumber)
     if (!_isMeasuring) return;
     _isMeasuring = false;
     _inFlight.back().frameNumber = frameNumber;
-    _gl->glQueryCounter(_inFlight.back().end, GL_TIMESTAMP);
+    _gl->glQueryCounter(_inFlight.back().queries[1], GL_TIMESTAMP);
 }
 
 std::vector<FeedbackTimer::Measured> FeedbackTimer::takeFinished()
@@ -73,34 +60,29 @@ std::vector<FeedbackTimer::Measured> FeedbackTimer::takeFinished()
     {
         const Stamps stamps = _inFlight.front();
         GLuint isThere = 0;
-        _gl->glGetQueryObjectuiv(stamps.end, GL_QUERY_RESULT_AVAILABLE, &isThere);
+        _gl->glGetQueryObjectuiv(stamps.queries[1], GL_QUERY_RESULT_AVAILABLE, &isThere);
         if (isThere == 0) break;
         GLuint64 begin = 0, end = 0; // nanoseconds
-        _gl->glGetQueryObjectui64v(stamps.begin, GL_QUERY_RESULT, &begin);
-        _gl->glGetQueryObjectui64v(stamps.end, GL_QUERY_RESULT, &end);
+        _gl->glGetQueryObjectui64v(stamps.queries[0], GL_QUERY_RESULT, &begin);
+        _gl->glGetQueryObjectui64v(stamps.queries[1], GL_QUERY_RESULT, &end);
         // Skips a measurement during which the clock wrapped.
         if (end >= begin) measured.push_back({stamps.frameNumber, 1e-9 * static_cast<double>(end - begin)});
+        _gl->glDeleteQueries(2, stamps.queries);
         _inFlight.pop_front();
-        _spare.push_back(stamps);
     }
     return measured;
 }
 
 void FeedbackTimer::deleteAllGLObjects()
 {
-    _spare.insert(_spare.end(), _inFlight.begin(), _inFlight.end());
-    for (const Stamps& stamps : _spare)
-    {
-        _gl->glDeleteQueries(1, &stamps.begin);
-        _gl->glDeleteQueries(1, &stamps.end);
-    }
+    for (const Stamps& stamps : _inFlight)
+        _gl->glDeleteQueries(2, stamps.queries);
     discardAllGLObjects();
 }
 
 void FeedbackTimer::discardAllGLObjects()
 {
     _inFlight.clear();
-    _spare.clear();
     _isMeasuring = false;
 }
 

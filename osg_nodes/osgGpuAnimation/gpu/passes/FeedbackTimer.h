@@ -62,18 +62,14 @@ protected:
 private:
     struct Stamps
     {
-        GLuint begin;
-        GLuint end;
+        GLuint queries[2]; ///< of the begin and the end
         unsigned int frameNumber;
     };
     static constexpr std::size_t maxInFlight = 16;
 
-    Stamps nextStamps();
-
     osg::GLExtensions* _gl;
     GLint _clockBits;             ///< 0: no time stamps
     std::deque<Stamps> _inFlight; ///< the oldest first; the last has no end time stamp while _isMeasuring
-    std::vector<Stamps> _spare;
     bool _isMeasuring = false;
 };
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/looks/environment/PrefilteredMap.h>
 
+#include <osgGpuAnimation/gpu/FeedbackPass.h>
+
 #include <osg/ClipPlane>
 #include <osg/FrameBufferObject>
 #include <osg/GLExtensions>
@@ -107,63 +109,6 @@ private:
     GLuint _ownVertexArray = 0, _ownFramebuffer = 0;
 };
 
-/// A compiled shader, or 0 with a warning.
-GLuint makeShader(osg::GLExtensions& gl, GLenum type, const char* source)
-{
-    const GLuint shader = gl.glCreateShader(type);
-    const char* const texts[] = {"#version 330\n", source};
-    gl.glShaderSource(shader, 2, const_cast<const GLchar**>(texts), nullptr);
-    gl.glCompileShader(shader);
-    GLint isCompiled = GL_FALSE;
-    gl.glGetShaderiv(shader, GL_COMPILE_STATUS, &isCompiled);
-    if (isCompiled) return shader;
-    std::string log;
-    gl.getShaderInfoLog(shader, log);
-    OSG_WARN << "osgGpuAnimation: a shader of the surroundings does not compile: " << log << std::endl;
-    gl.glDeleteShader(shader);
-    return 0;
-}
-
-/// RAII: the program that draws a level of a face. valid() is false, with a warning, if it does not compile or link.
-class PrefilterProgram
-{
-public:
-    explicit PrefilterProgram(osg::GLExtensions& gl) : _gl(gl), _program(gl.glCreateProgram())
-    {
-        const GLuint vertex = makeShader(gl, GL_VERTEX_SHADER, shaders::prefilter_vert);
-        const GLuint fragment = makeShader(gl, GL_FRAGMENT_SHADER, shaders::prefilter_frag);
-        for (const GLuint shader : {vertex, fragment})
-        {
-            if (shader == 0) continue;
-            gl.glAttachShader(_program, shader);
-            gl.glDeleteShader(shader);
-        }
-        if (vertex == 0 || fragment == 0) return;
-        gl.glLinkProgram(_program);
-        gl.glGetProgramiv(_program, GL_LINK_STATUS, &_isLinked);
-        if (_isLinked)
-        {
-            gl.glUseProgram(_program);
-            return;
-        }
-        std::string log;
-        gl.getProgramInfoLog(_program, log);
-        OSG_WARN << "osgGpuAnimation: the program of the surroundings does not link: " << log << std::endl;
-    }
-    ~PrefilterProgram() { _gl.glDeleteProgram(_program); }
-    PrefilterProgram(const PrefilterProgram&) = delete;
-    PrefilterProgram& operator=(const PrefilterProgram&) = delete;
-
-    bool valid() const { return _isLinked == GL_TRUE; }
-    void set(const char* uniform, int value) { _gl.glUniform1i(_gl.glGetUniformLocation(_program, uniform), value); }
-    void set(const char* uniform, float value) { _gl.glUniform1f(_gl.glGetUniformLocation(_program, uniform), value); }
-
-private:
-    osg::GLExtensions& _gl;
-    GLuint _program;
-    GLint _isLinked = GL_FALSE;
-};
-
 GLenum faceTarget(int face)
 {
     return GL_TEXTURE_CUBE_MAP_POSITIVE_X + static_cast<GLenum>(face);
@@ -220,25 +165,31 @@ bool prefilter(osg::State& state, GLuint texture, const RadianceCube& radiance)
 {
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
     const DrawingScope scope(state);
-    PrefilterProgram program(gl);
-    if (!program.valid()) return false;
+    const std::string version = "#version 330\n";
+    const GLuint program = linkProgram(gl, "the program of the surroundings",
+                                       {{GL_VERTEX_SHADER, version + shaders::prefilter_vert},
+                                        {GL_FRAGMENT_SHADER, version + shaders::prefilter_frag}});
+    if (program == 0) return false;
+    const auto find = [&](const char* uniform) { return gl.glGetUniformLocation(program, uniform); };
+    gl.glUseProgram(program);
     const SourceTexture source(gl, radiance);
-    program.set("radiance", static_cast<int>(state.getActiveTextureUnit()));
-    program.set("side", static_cast<float>(RadianceCube::side));
+    gl.glUniform1i(find("radiance"), static_cast<int>(state.getActiveTextureUnit()));
+    gl.glUniform1f(find("side"), static_cast<float>(RadianceCube::side));
     for (int level = 0; level < PrefilteredMap::levels; ++level)
     {
         const int size = RadianceCube::side >> level;
         const float roughness = static_cast<float>(level) / (PrefilteredMap::levels - 1);
-        program.set("alpha", roughness * roughness);
-        program.set("size", static_cast<float>(size));
+        gl.glUniform1f(find("alpha"), roughness * roughness);
+        gl.glUniform1f(find("size"), static_cast<float>(size));
         glViewport(0, 0, size, size);
         for (int face = 0; face < 6; ++face)
         {
             gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, GL_COLOR_ATTACHMENT0_EXT, faceTarget(face), texture, level);
-            program.set("face", face);
+            gl.glUniform1i(find("face"), face);
             glDrawArrays(GL_TRIANGLES, 0, 3);
         }
     }
+    gl.glDeleteProgram(program);
     return true;
 }
 

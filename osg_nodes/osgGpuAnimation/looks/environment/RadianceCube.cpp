@@ -5,6 +5,8 @@
 
 #include <osg/Math>
 
+#include <glm/gtc/packing.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -30,15 +32,6 @@ std::string sizeText(int width, int height)
 float linearOf(float encoded)
 {
     return linearColor(osg::Vec4(encoded, 0.0f, 0.0f, 1.0f)).r();
-}
-
-float floatOfHalf(std::uint16_t half)
-{
-    const int exponent = half >> 10 & 31;
-    const auto mantissa = static_cast<float>(half & 1023);
-    if (exponent == 31) return 0.0f; // infinite, or not a number
-    const float magnitude = exponent == 0 ? std::ldexp(mantissa, -24) : std::ldexp(mantissa + 1024.0f, exponent - 25);
-    return half & 0x8000 ? -magnitude : magnitude;
 }
 
 /// The components of a pixel in its format.
@@ -79,7 +72,7 @@ public:
     {
         if (_type == GL_UNSIGNED_BYTE) return _bytes[*bytes];
         if (_type == GL_UNSIGNED_SHORT) return linearOf(static_cast<float>(read<std::uint16_t>(bytes)) / 65535.0f);
-        const float value = _type == GL_FLOAT ? read<float>(bytes) : floatOfHalf(read<std::uint16_t>(bytes));
+        const float value = _type == GL_FLOAT ? read<float>(bytes) : glm::unpackHalf1x16(read<std::uint16_t>(bytes));
         return std::isfinite(value) ? std::clamp(value, 0.0f, maxHalf) : 0.0f;
     }
 

@@ -10,9 +10,8 @@
 #include <osg/Material>
 #include <osg/observer_ptr>
 
-#include <cmath>
 #include <optional>
-#include <string>
+#include <vector>
 
 namespace osgGpuAnimation
 {
@@ -34,73 +33,17 @@ void addLights(osgUtil::PositionalStateContainer& container, const osg::Matrixd&
     }
 }
 
-/// A uniform's number in osg::Program's list of locations.
-unsigned int nameId(const std::string& name)
+constexpr std::size_t vectorsOfLight = 6;
+
+/// The numbers of a light in light.glsl.
+void addNumbers(const osg::Light& light, const osg::Matrixd& toEye, std::vector<osg::Vec4>& numbers)
 {
-    return osg::Uniform::getNameID(name);
-}
-
-struct LightNames
-{
-    explicit LightNames(std::size_t number) : light("coreLights[" + std::to_string(number) + "].") {}
-
-    std::string light;
-    unsigned int ambient = nameId(light + "ambient");
-    unsigned int diffuse = nameId(light + "diffuse");
-    unsigned int specular = nameId(light + "specular");
-    unsigned int position = nameId(light + "position");
-    unsigned int spotDirection = nameId(light + "spotDirection");
-    unsigned int spotExponent = nameId(light + "spotExponent");
-    unsigned int spotCutoff = nameId(light + "spotCutoff");
-    unsigned int spotCosCutoff = nameId(light + "spotCosCutoff");
-    unsigned int constantAttenuation = nameId(light + "constantAttenuation");
-    unsigned int linearAttenuation = nameId(light + "linearAttenuation");
-    unsigned int quadraticAttenuation = nameId(light + "quadraticAttenuation");
-};
-
-/// Sets uniforms of the applied program.
-class Uniforms
-{
-public:
-    explicit Uniforms(osg::State& state)
-        : _program(state.getLastAppliedProgramObject()), _gl(*state.get<osg::GLExtensions>())
-    {
-    }
-    void set(unsigned int name, const osg::Vec4& value) const
-    {
-        if (const GLint location = find(name); location >= 0) _gl.glUniform4fv(location, 1, value.ptr());
-    }
-    void set(unsigned int name, const osg::Vec3& value) const
-    {
-        if (const GLint location = find(name); location >= 0) _gl.glUniform3fv(location, 1, value.ptr());
-    }
-    void set(unsigned int name, float value) const
-    {
-        if (const GLint location = find(name); location >= 0) _gl.glUniform1f(location, value);
-    }
-
-private:
-    GLint find(unsigned int name) const { return _program ? _program->getUniformLocation(name) : -1; }
-
-    const osg::Program::PerContextProgram* _program;
-    const osg::GLExtensions& _gl;
-};
-
-void setLight(const Uniforms& uniforms, const LightNames& names, const ViewLights::Placed& placed)
-{
-    const osg::Light& light = *placed.light;
-    uniforms.set(names.ambient, light.getAmbient());
-    uniforms.set(names.diffuse, light.getDiffuse());
-    uniforms.set(names.specular, light.getSpecular());
-    uniforms.set(names.position, osg::Vec4(osg::Vec4d(light.getPosition()) * placed.toEye));
-    uniforms.set(names.spotDirection,
-                 osg::Vec3(osg::Matrixd::transform3x3(osg::Vec3d(light.getDirection()), placed.toEye)));
-    uniforms.set(names.spotExponent, light.getSpotExponent());
-    uniforms.set(names.spotCutoff, light.getSpotCutoff());
-    uniforms.set(names.spotCosCutoff, static_cast<float>(std::cos(osg::DegreesToRadians(light.getSpotCutoff()))));
-    uniforms.set(names.constantAttenuation, light.getConstantAttenuation());
-    uniforms.set(names.linearAttenuation, light.getLinearAttenuation());
-    uniforms.set(names.quadraticAttenuation, light.getQuadraticAttenuation());
+    const osg::Vec3 direction(osg::Matrixd::transform3x3(osg::Vec3d(light.getDirection()), toEye));
+    numbers.insert(numbers.end(),
+                   {light.getAmbient(), light.getDiffuse(), light.getSpecular(),
+                    osg::Vec4(osg::Vec4d(light.getPosition()) * toEye), osg::Vec4(direction, light.getSpotExponent()),
+                    osg::Vec4(light.getSpotCutoff(), light.getConstantAttenuation(), light.getLinearAttenuation(),
+                              light.getQuadraticAttenuation())});
 }
 
 /// Of a render stage, kept in its list of lights.
@@ -175,26 +118,27 @@ bool isCoreProfile(const osg::State& state)
 
 void setFixedPipelineUniforms(osg::State& state, unsigned int lights)
 {
-    static const unsigned int ambient = nameId("coreAmbient"), shine = nameId("coreShine"),
-                              fogColor = nameId("coreFogColor"), fogRange = nameId("coreFogRange");
-    static const LightNames names[ViewLights::lightCount] = {LightNames(0), LightNames(1), LightNames(2),
-                                                             LightNames(3), LightNames(4), LightNames(5),
-                                                             LightNames(6), LightNames(7)};
-    const Uniforms uniforms(state);
-    const LightList placed = lights != 0 ? ViewLights::of(state) : LightList();
-    for (std::size_t i = 0; i < placed.size(); ++i)
-        if ((lights & (1u << i)) != 0 && placed[i].light) setLight(uniforms, names[i], placed[i]);
+    static const unsigned int name = osg::Uniform::getNameID("coreState");
+    const osg::Program::PerContextProgram* program = state.getLastAppliedProgramObject();
+    const GLint location = program ? program->getUniformLocation(name) : -1;
+    if (location < 0) return;
     const auto* model = applied<osg::LightModel>(state, osg::StateAttribute::LIGHTMODEL);
-    uniforms.set(ambient, model ? model->getAmbientIntensity() : osg::Vec4(0.2f, 0.2f, 0.2f, 1.0f));
     const auto* material = applied<osg::Material>(state, osg::StateAttribute::MATERIAL);
-    osg::Vec4 specular = material ? material->getSpecular(osg::Material::FRONT) : osg::Vec4();
-    specular.w() = material ? material->getShininess(osg::Material::FRONT) : 0.0f;
-    uniforms.set(shine, specular);
-    const auto* fog = applied<osg::Fog>(state, osg::StateAttribute::FOG);
-    if (!fog) return;
-    uniforms.set(fogColor, fog->getColor());
-    uniforms.set(fogRange, osg::Vec4(fog->getDensity(), fog->getStart(), fog->getEnd(),
-                                     1.0f / (fog->getEnd() - fog->getStart())));
+    osg::Vec4 shine = material ? material->getSpecular(osg::Material::FRONT) : osg::Vec4();
+    shine.w() = material ? material->getShininess(osg::Material::FRONT) : 0.0f;
+    std::vector<osg::Vec4> numbers{model ? model->getAmbientIntensity() : osg::Vec4(0.2f, 0.2f, 0.2f, 1.0f), shine};
+    if (const auto* fog = applied<osg::Fog>(state, osg::StateAttribute::FOG))
+        numbers.insert(numbers.end(), {fog->getColor(), osg::Vec4(fog->getDensity(), fog->getStart(), fog->getEnd(),
+                                                                  1.0f / (fog->getEnd() - fog->getStart()))});
+    numbers.resize(4);
+    const LightList placed = lights != 0 ? ViewLights::of(state) : LightList();
+    for (std::size_t i = 0; lights >> i != 0; ++i)
+    {
+        const osg::Light* light = placed[i].light;
+        if (light && (lights & (1u << i)) != 0) addNumbers(*light, placed[i].toEye, numbers);
+        numbers.resize(4 + (i + 1) * vectorsOfLight);
+    }
+    state.get<osg::GLExtensions>()->glUniform4fv(location, static_cast<GLsizei>(numbers.size()), numbers[0].ptr());
 }
 
 } // namespace osgGpuAnimation

@@ -40,7 +40,7 @@ private:
 /// Binds the palette and the tints and sets the uniforms of skin.glsl in the applied program.
 /// influences: the largest number per vertex. rigidEntry: moves all vertices; -1: influences are per vertex.
 void bindPalette(osg::State& state, const PalettePlace& place, int influences, int rigidEntry);
-/// For the next draws, after bindPalette(): see LodLevels::Reduced.
+/// For the next draws, after bindPalette(): see LodLevels::Step.
 void setOutset(osg::State& state, float outset);
 
 /// RAII: the instances of a PaletteBinding for the draws of one mesh, as runs that one draw each shows. Where their

@@ -150,24 +150,6 @@ void MergedMesh::takeTriangles()
 
 } // namespace
 
-CharacterLevels::Part::Part(const SkinnedGeometry& mesh)
-    : mesh(&mesh), vertices(mesh.getVertexArray()), modifiedCount(vertices ? vertices->getModifiedCount() : 0),
-      state(mesh.getStateSet()), mask(mesh.getNodeMask())
-{
-    for (const osg::ref_ptr<osg::PrimitiveSet>& set : mesh.getPrimitiveSetList())
-        primitives.push_back({set, set ? set->getModifiedCount() : 0});
-}
-
-bool CharacterLevels::Part::isOf(const SkinnedGeometry& present) const
-{
-    if (&present != mesh || present.getVertexArray() != vertices || present.getStateSet() != state) return false;
-    if (present.getNodeMask() != mask || (vertices && vertices->getModifiedCount() != modifiedCount)) return false;
-    const osg::Geometry::PrimitiveSetList& sets = present.getPrimitiveSetList();
-    return std::equal(sets.begin(), sets.end(), primitives.begin(), primitives.end(),
-                      [](const osg::ref_ptr<osg::PrimitiveSet>& set, const Primitives& known)
-                      { return set == known.set && (!set || set->getModifiedCount() == known.modifiedCount); });
-}
-
 bool CharacterLevels::isOf(const osg::Group& meshes, const AnimationSet& set) const
 {
     bool isSame = &set == _set;

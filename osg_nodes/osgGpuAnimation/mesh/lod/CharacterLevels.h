@@ -88,19 +88,18 @@ private:
     /// What the levels of a part depend on.
     struct Part
     {
-        struct Primitives
+        explicit Part(const SkinnedGeometry& mesh)
+            : mesh(&mesh), content(mesh), state(mesh.getStateSet()), mask(mesh.getNodeMask())
         {
-            osg::ref_ptr<const osg::PrimitiveSet> set;
-            unsigned int modifiedCount;
-        };
-
-        explicit Part(const SkinnedGeometry& mesh);
-        bool isOf(const SkinnedGeometry& present) const;
+        }
+        bool isOf(const SkinnedGeometry& present) const
+        {
+            return &present == mesh && content.isOf(present) && present.getStateSet() == state &&
+                   present.getNodeMask() == mask;
+        }
 
         osg::ref_ptr<const SkinnedGeometry> mesh;
-        osg::ref_ptr<const osg::Array> vertices;
-        unsigned int modifiedCount; ///< of the vertices
-        std::vector<Primitives> primitives;
+        LodLevels content; ///< without steps
         osg::ref_ptr<const osg::StateSet> state;
         osg::Node::NodeMask mask;
     };

@@ -387,13 +387,14 @@ bool LodLevels::isOf(const osg::Geometry& mesh) const
     return true;
 }
 
-LodLevels::Reduced LodLevels::reduced(std::size_t primitiveSet, int level) const
+const LodLevels::Step& LodLevels::reduced(std::size_t primitiveSet, int level) const
 {
-    Reduced found;
-    if (primitiveSet >= _primitives.size()) return found;
-    for (const Step& step : _primitives[primitiveSet].steps)
-        if (step.level <= level) found = {step.elements, step.outset, step.error};
-    return found;
+    static const Step whole;
+    const Step* found = &whole;
+    if (primitiveSet >= _primitives.size()) return whole;
+    for (const Step& step : steps(primitiveSet))
+        if (step.level <= level) found = &step;
+    return *found;
 }
 
 double LodLevels::foundError(int level) const

@@ -86,10 +86,10 @@ public:
     /// The reduced triangles of a primitive set.
     struct Step
     {
-        int level = allTriangles; ///< and coarser ones
-        osg::ref_ptr<osg::DrawElements> elements;
-        float outset = 0.0f; ///< see Reduced
-        double error = 0.0;  ///< see Reduced
+        int level = allTriangles;                 ///< and coarser ones
+        osg::ref_ptr<osg::DrawElements> elements; ///< null: the primitive set itself
+        float outset = 0.0f; ///< how far vertices move along their normals, in the character's units
+        double error = 0.0;  ///< the largest distance of a vertex from the drawn surface, in the character's units
     };
     using Steps = std::vector<Step>; ///< by ascending levels
     /// The levels that a file contains. steps: by primitive set, from steps() of the same mesh. They are untrusted: an
@@ -106,15 +106,9 @@ public:
     /// The finest and the coarsest level with reduced triangles; allTriangles: no such level.
     int finest() const { return _finest; }
     int coarsest() const { return _coarsest; }
-    struct Reduced
-    {
-        const osg::DrawElements* elements = nullptr; ///< null: draw the primitive set itself
-        float outset = 0.0f; ///< how far vertices move along their normals, in the character's units
-        double error = 0.0;  ///< the largest distance of a vertex from the drawn surface, in the character's units
-    };
     /// The reduced triangles of the mesh's primitive set at a level. Their vertices lie on the original surface and
     /// most of their area within it; the outset gives them its volume, so that small characters do not get thin.
-    Reduced reduced(std::size_t primitiveSet, int level) const;
+    const Step& reduced(std::size_t primitiveSet, int level) const;
     /// The largest error of the mesh's reduced triangles at a level; at most errorOf(level).
     double foundError(int level) const;
 

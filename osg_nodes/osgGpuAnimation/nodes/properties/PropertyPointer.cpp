@@ -43,71 +43,49 @@ const std::string emissiveStrength = "extensions/KHR_materials_emissive_strength
 const std::string specular = "extensions/KHR_materials_specular/specular";
 const std::string clearcoat = "extensions/KHR_materials_clearcoat/clearcoat";
 const std::string sheen = "extensions/KHR_materials_sheen/sheen";
+const std::string transmission = "extensions/KHR_materials_transmission/transmission";
 
 void addTransforms(std::vector<PropertyMember>& all)
 {
     for (const TextureSlot& slot : textureSlots)
         for (const auto& [part, count, rest] :
              {std::tuple("offset", 2u, 0.0f), std::tuple("rotation", 1u, 0.0f), std::tuple("scale", 2u, 1.0f)})
-            all.push_back({Object::Material,
-                           std::string(slot.name) + "/extensions/KHR_texture_transform/" + part,
-                           count,
-                           {rest, rest},
-                           -maxFloat,
-                           maxFloat,
-                           false,
-                           slot.name,
-                           "",
-                           0,
-                           slot.name,
-                           slot.define});
+        {
+            const std::string name = std::string(slot.name) + "/extensions/KHR_texture_transform/" + part;
+            all.push_back({Object::Material, name, count, {rest, rest}, -maxFloat, maxFloat});
+            all.back().group = all.back().texture = slot.name;
+            all.back().define = slot.define;
+        }
 }
 
 std::vector<PropertyMember> makeMembers()
 {
     std::vector<PropertyMember> all = {
-        {Object::Material, "pbrMetallicRoughness/baseColorFactor", 4, {1, 1, 1, 1}, 0, 1, false, "", "baseColorFactor"},
-        {Object::Material, "pbrMetallicRoughness/metallicFactor", 1, {1}, 0, 1, false, "", "materialFactors", 0},
-        {Object::Material, "pbrMetallicRoughness/roughnessFactor", 1, {1}, 0, 1, false, "", "materialFactors", 1},
-        {Object::Material, "normalTexture/scale", 1, {1}, -maxFloat, maxFloat, false, "", "materialFactors", 2},
-        {Object::Material, "occlusionTexture/strength", 1, {1}, 0, 1, false, "", "materialFactors", 3},
-        {Object::Material, "alphaCutoff", 1, {0.5f}, 0, maxFloat, false, "", "alphaCutoff"},
-        {Object::Material, "emissiveFactor", 3, {}, 0, 1, false, "emission", "emissiveFactor"},
-        {Object::Material, emissiveStrength, 1, {1}, 0, maxFloat, false, "emission", "emissiveStrength"},
-        {Object::Material, "extensions/KHR_materials_ior/ior", 1, {1.5f}, 0, maxFloat, false, "reflection"},
-        {Object::Material, specular + "ColorFactor", 3, {1, 1, 1}, 0, maxFloat, false, "reflection"},
-        {Object::Material, specular + "Factor", 1, {1}, 0, 1, false, "", "materialSpecular", 3},
-        {Object::Material, clearcoat + "Factor", 1, {}, 0, 1, false, "", "materialClearcoat", 0},
-        {Object::Material, clearcoat + "RoughnessFactor", 1, {}, 0, 1, false, "", "materialClearcoat", 1},
-        {Object::Material,
-         clearcoat + "NormalTexture/scale",
-         1,
-         {1},
-         -maxFloat,
-         maxFloat,
-         false,
-         "",
-         "materialClearcoat",
-         2},
-        {Object::Material, sheen + "ColorFactor", 3, {}, 0, 1, false, "", "materialSheen", 0},
-        {Object::Material, sheen + "RoughnessFactor", 1, {}, 0, 1, false, "", "materialSheen", 3},
-        {Object::Material,
-         "extensions/KHR_materials_transmission/transmissionFactor",
-         1,
-         {},
-         0,
-         1,
-         false,
-         "",
-         "materialTransmission"},
-        {Object::Light, "color", 3, {1, 1, 1}, 0, maxFloat, false, "light"},
-        {Object::Light, "intensity", 1, {1}, 0, maxFloat, false, "light"},
-        {Object::Light, "range", 1, {}, 0, maxFloat, false, "light"},
-        {Object::Light, "spot/innerConeAngle", 1, {}, 0, halfPi, false, "light"},
-        {Object::Light, "spot/outerConeAngle", 1, {halfPi / 2.0f}, 0, halfPi, false, "light"},
+        {Object::Material, "pbrMetallicRoughness/baseColorFactor", 4, {1, 1, 1, 1}, 0, 1, "baseColorFactor"},
+        {Object::Material, "pbrMetallicRoughness/metallicFactor", 1, {1}, 0, 1, "materialFactors", 0},
+        {Object::Material, "pbrMetallicRoughness/roughnessFactor", 1, {1}, 0, 1, "materialFactors", 1},
+        {Object::Material, "normalTexture/scale", 1, {1}, -maxFloat, maxFloat, "materialFactors", 2},
+        {Object::Material, "occlusionTexture/strength", 1, {1}, 0, 1, "materialFactors", 3},
+        {Object::Material, "alphaCutoff", 1, {0.5f}, 0, maxFloat, "alphaCutoff"},
+        {Object::Material, "emissiveFactor", 3, {}, 0, 1, "emissiveFactor", 0, "emission"},
+        {Object::Material, emissiveStrength, 1, {1}, 0, maxFloat, "emissiveStrength", 0, "emission"},
+        {Object::Material, "extensions/KHR_materials_ior/ior", 1, {1.5f}, 0, maxFloat, "", 0, "reflection"},
+        {Object::Material, specular + "ColorFactor", 3, {1, 1, 1}, 0, maxFloat, "", 0, "reflection"},
+        {Object::Material, specular + "Factor", 1, {1}, 0, 1, "materialSpecular", 3},
+        {Object::Material, clearcoat + "Factor", 1, {}, 0, 1, "materialClearcoat", 0},
+        {Object::Material, clearcoat + "RoughnessFactor", 1, {}, 0, 1, "materialClearcoat", 1},
+        {Object::Material, clearcoat + "NormalTexture/scale", 1, {1}, -maxFloat, maxFloat, "materialClearcoat", 2},
+        {Object::Material, sheen + "ColorFactor", 3, {}, 0, 1, "materialSheen", 0},
+        {Object::Material, sheen + "RoughnessFactor", 1, {}, 0, 1, "materialSheen", 3},
+        {Object::Material, transmission + "Factor", 1, {}, 0, 1, "materialTransmission"},
+        {Object::Light, "color", 3, {1, 1, 1}, 0, maxFloat, "", 0, "light"},
+        {Object::Light, "intensity", 1, {1}, 0, maxFloat, "", 0, "light"},
+        {Object::Light, "range", 1, {}, 0, maxFloat, "", 0, "light"},
+        {Object::Light, "spot/innerConeAngle", 1, {}, 0, halfPi, "", 0, "light"},
+        {Object::Light, "spot/outerConeAngle", 1, {halfPi / 2.0f}, 0, halfPi, "", 0, "light"},
         {Object::Camera, "perspective/yfov", 1, {}, 1e-3f, 3.14f},
         {Object::Camera, "orthographic/ymag", 1, {}, -maxFloat, maxFloat},
-        {Object::Node, "extensions/KHR_node_visibility/visible", 1, {1}, 0, 1, true},
+        {Object::Node, "extensions/KHR_node_visibility/visible", 1, {1}, 0, 1, "", 0, "", true},
     };
     addTransforms(all);
     return all;

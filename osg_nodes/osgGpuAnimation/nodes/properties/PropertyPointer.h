@@ -29,10 +29,10 @@ struct PropertyMember
     std::array<float, 4> rest{};  ///< the specification's default value
     float min = 0.0f;             ///< smaller numbers count as this
     float max = 1.0f;             ///< larger numbers count as this
-    bool isBoolean = false;       ///< 0: false
-    std::string group{};          ///< members of one group are set together: a set has all or none; empty: no group
     const char* uniform = "";     ///< of a material: the uniform that holds it
     std::size_t component = 0;    ///< its first number there
+    std::string group{};          ///< members of one group are set together: a set has all or none; empty: no group
+    bool isBoolean = false;       ///< 0: false
     std::string texture{};        ///< of a texture transform: the name of the texture, as `normalTexture`
     const char* define = nullptr; ///< likewise: the shader define with the number of its coordinates; null: number 0
 

@@ -19,7 +19,6 @@
 #include <osgGpuAnimation/scene/traversal/CullScopes.h>
 #include <osgGpuAnimation/scene/traversal/MeshVisits.h>
 
-#include <osgUtil/CullVisitor>
 #include <osgUtil/IntersectionVisitor>
 #include <osgUtil/Statistics>
 

@@ -12,7 +12,6 @@
 #include <cmath>
 #include <iostream>
 #include <mutex>
-#include <vector>
 
 namespace osgGpuAnimation
 {

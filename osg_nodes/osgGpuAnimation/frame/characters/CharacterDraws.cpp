@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/frame/characters/CharacterDraws.h>
 
-#include <osgGpuAnimation/frame/stage/LodSelection.h>
 #include <osgGpuAnimation/mesh/draw/InstancedDraw.h>
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/scene/OsgMatrix.h>

@@ -11,7 +11,6 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <osgUtil/CullVisitor>
 
 #include <algorithm>
 #include <optional>

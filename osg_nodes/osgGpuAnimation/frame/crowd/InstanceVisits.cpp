@@ -7,8 +7,6 @@
 
 #include <osgUtil/IntersectionVisitor>
 
-#include <vector>
-
 namespace osgGpuAnimation
 {
 

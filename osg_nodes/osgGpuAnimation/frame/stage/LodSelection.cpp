@@ -7,8 +7,6 @@
 
 #include <osg/Transform>
 
-#include <glm/geometric.hpp>
-
 #include <algorithm>
 
 namespace osgGpuAnimation

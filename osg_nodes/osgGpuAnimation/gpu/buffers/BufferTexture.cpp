@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/gpu/buffers/BufferTexture.h>
 
-#include <osg/Texture>
-
 #include <algorithm>
 #include <atomic>
 #include <cassert>

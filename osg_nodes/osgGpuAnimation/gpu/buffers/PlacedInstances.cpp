@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/gpu/buffers/PlacedInstances.h>
 
-#include <osgGpuAnimation/gpu/buffers/BufferTexture.h>
-
-#include <layout.glsl>
-
 #include <osg/ContextData>
 
 #include <algorithm>

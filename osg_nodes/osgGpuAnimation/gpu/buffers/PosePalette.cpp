@@ -2,7 +2,6 @@
 #include <osgGpuAnimation/gpu/buffers/PosePalette.h>
 
 #include <osgGpuAnimation/animation/keyframes/PosedKeyframe.h>
-#include <osgGpuAnimation/gpu/FeedbackPass.h>
 
 #include <layout.glsl>
 

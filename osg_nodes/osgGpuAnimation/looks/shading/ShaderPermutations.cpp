@@ -19,9 +19,7 @@
 #include <ShaderSources.h>
 
 #include <algorithm>
-#include <array>
 #include <initializer_list>
-#include <string>
 
 namespace osgGpuAnimation
 {

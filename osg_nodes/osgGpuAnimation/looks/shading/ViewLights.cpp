@@ -4,7 +4,6 @@
 #include <osgGpuAnimation/gpu/detail/FixedPipeline.h>
 
 #include <osg/Fog>
-#include <osg/GLExtensions>
 #include <osg/GraphicsContext>
 #include <osg/LightModel>
 #include <osg/Material>

@@ -9,7 +9,6 @@
 #include <osg/GLExtensions>
 #include <osg/Notify>
 #include <osg/Program>
-#include <osg/Texture>
 
 #include <algorithm>
 #include <atomic>

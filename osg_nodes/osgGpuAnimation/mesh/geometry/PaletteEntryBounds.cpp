@@ -3,7 +3,6 @@
 
 #include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/bounds/JointRange.h>
-#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 
 #include <osg/ComputeBoundsVisitor>
 #include <osg/CullStack>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/mesh/lod/CharacterLevels.h>
 
 #include <osgGpuAnimation/animation/Pose.h>

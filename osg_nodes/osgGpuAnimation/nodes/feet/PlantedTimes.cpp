@@ -4,7 +4,6 @@
 #include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/detail/ControllerDetail.h>
 #include <osgGpuAnimation/animation/Pose.h>
-#include <osgGpuAnimation/authoring/FootContacts.h>
 
 #include <algorithm>
 

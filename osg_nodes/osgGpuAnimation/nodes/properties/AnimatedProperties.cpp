@@ -19,9 +19,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <string_view>
-#include <utility>
 
 namespace osgGpuAnimation
 {

@@ -5,7 +5,7 @@
 #include "support/ScratchFolder.h"
 
 #include <osgGpuAnimation/animation/constraints/ConstraintPlan.h>
-#include <osgGpuAnimation/gpu/passes/PoseVariant.h>
+#include <osgGpuAnimation/gpu/passes/EvaluationContext.h>
 #include <osgGpuAnimation/gpu/PoseBatch.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/looks/CharacterProgram.h>
@@ -305,12 +305,11 @@ protected:
             shape.chainLength = 4;
             shape.midPlace = 2;
             shape.aboveLength = 1;
-            for (const auto& pass :
-                 {variant.makePosePass(gl()), variant.makeMixPass(gl()), variant.makeConstraintPass(gl(), shape)})
-            {
-                EXPECT_TRUE(pass->valid());
-                pass->release();
-            }
+            using Stage = EvaluationContext::Stage;
+            EvaluationContext context(gl());
+            for (const Stage stage : {Stage::Pose, Stage::Mix, Stage::Constrain})
+                EXPECT_TRUE(context.pass(stage, variant, shape).valid());
+            context.release();
         }
         PosePipeline& pipeline = *PosePipeline::of(state());
         pipeline.options().form = PosePipeline::Form::Separate;

@@ -117,7 +117,15 @@ bool PoseBatch::usePose(const PoseInstruction& instruction, BlendSample& sample)
 
 std::size_t PoseBatch::append(const BlendSample* samples, std::size_t count, const PoseInstruction* instruction)
 {
-    if (count > _sampleStride) widen(count);
+    if (count > _sampleStride)
+    {
+        std::vector<BlendSample> widened(_size * count, BlendSample{0, 0.0f, 0.0f, 0});
+        for (std::size_t instance = 0; instance < _size; ++instance)
+            for (std::size_t i = 0; i < _sampleStride; ++i)
+                widened[instance * count + i] = _samples[instance * _sampleStride + i];
+        _samples = std::move(widened);
+        _sampleStride = count;
+    }
     if (!_firstPosed.empty()) _firstPosed.push_back(static_cast<std::uint32_t>(_posed.size()));
     for (const BlendSample* sample = samples; sample != samples + count; ++sample)
     {
@@ -130,7 +138,10 @@ std::size_t PoseBatch::append(const BlendSample* samples, std::size_t count, con
             // Nothing is set: the sample keeps its place and shows nothing.
             added = {0, 0.0f, 0.0f, added.control & ~POSE_SAMPLE_POSED};
         }
-        addNeeds(added);
+        _needs.layers = _needs.layers || (added.control & POSE_SAMPLE_ABOVE) != 0;
+        _needs.additive = _needs.additive || (added.control & POSE_SAMPLE_ADDITIVE) != 0;
+        _needs.masks = _needs.masks || added.control >> POSE_SAMPLE_MASK_SHIFT != 0;
+        _needs.mixing = _needs.mixing || !isPlain(added);
         // A mask that nobody holds any more is no mask.
         if (!holdMask(added.control >> POSE_SAMPLE_MASK_SHIFT)) added.control &= (1u << POSE_SAMPLE_MASK_SHIFT) - 1u;
     }
@@ -186,14 +197,6 @@ bool PoseBatch::holdMask(std::uint32_t number)
     if (number >= _masks.size()) _masks.resize(number + 1);
     if (!_masks[number]) _masks[number] = set().masks().find(number);
     return _masks[number] != nullptr;
-}
-
-void PoseBatch::addNeeds(const BlendSample& sample)
-{
-    _needs.layers = _needs.layers || (sample.control & POSE_SAMPLE_ABOVE) != 0;
-    _needs.additive = _needs.additive || (sample.control & POSE_SAMPLE_ADDITIVE) != 0;
-    _needs.masks = _needs.masks || sample.control >> POSE_SAMPLE_MASK_SHIFT != 0;
-    _needs.mixing = _needs.mixing || !isPlain(sample);
 }
 
 std::size_t PoseBatch::add(const PoseInstruction& instruction)
@@ -264,16 +267,6 @@ bool PoseBatch::isSame(const PoseBatch& other) const
            same(_rootMatrices, other._rootMatrices) && same(_tints, other._tints) && same(_targets, other._targets) &&
            std::equal(_posed.begin(), _posed.end(), other._posed.begin(), other._posed.end(),
                       [](const auto& left, const auto& right) { return left->serial() == right->serial(); });
-}
-
-void PoseBatch::widen(std::size_t sampleStride)
-{
-    std::vector<BlendSample> widened(_size * sampleStride, BlendSample{0, 0.0f, 0.0f, 0});
-    for (std::size_t instance = 0; instance < _size; ++instance)
-        for (std::size_t i = 0; i < _sampleStride; ++i)
-            widened[instance * sampleStride + i] = _samples[instance * _sampleStride + i];
-    _samples = std::move(widened);
-    _sampleStride = sampleStride;
 }
 
 void PoseBatch::clear()

@@ -128,8 +128,6 @@ public:
     bool isSame(const PoseBatch& other) const;
 
 private:
-    void widen(std::size_t sampleStride);
-    void addNeeds(const BlendSample& sample);
     bool holdMask(std::uint32_t number);
     std::size_t append(const BlendSample* samples, std::size_t count, const PoseInstruction* instruction);
     bool usePose(const PoseInstruction& instruction, BlendSample& sample);

@@ -16,19 +16,17 @@ void bindBufferTexture(osg::State& state, unsigned int unit, GLuint texture)
         state.haveAppliedTextureAttribute(unit, osg::StateAttribute::TEXTURE);
 }
 
-void BufferTexture::create()
-{
-    static std::atomic<std::uint64_t> last{0};
-    _serial = ++last;
-    _gl->glGenBuffers(1, &_buffer);
-    glGenTextures(1, &_texture);
-}
-
 bool BufferTexture::reserve(std::size_t bytes)
 {
     bytes = std::max(bytes, texelBytes);
     if (bytes <= _capacity) return false;
-    if (_buffer == 0) create();
+    if (_buffer == 0)
+    {
+        static std::atomic<std::uint64_t> last{0};
+        _serial = ++last;
+        _gl->glGenBuffers(1, &_buffer);
+        glGenTextures(1, &_texture);
+    }
     _capacity = std::max(bytes, _capacity + _capacity / 8);
     _gl->glBindBuffer(GL_TEXTURE_BUFFER, _buffer);
     _gl->glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(_capacity), nullptr, GL_DYNAMIC_COPY);

@@ -52,8 +52,6 @@ public:
     void discard();
 
 private:
-    void create();
-
     osg::GLExtensions* _gl;
     GLenum _format;
     GLuint _buffer = 0;

@@ -21,11 +21,23 @@ FeedbackPass& EvaluationContext::pass(Stage stage, const PoseVariant& variant, c
     if (pass) return *pass;
     const std::vector<const char*> rows{"row0", "row1", "row2"};
     const char* const limits = "const bool hasLimits = true;\n";
-    if (stage == Stage::Pose) pass = variant.makePosePass(*gl);
-    if (stage == Stage::Constrain) pass = variant.makeConstraintPass(*gl, shape);
-    if (stage == Stage::Mix) pass = variant.makeMixPass(*gl);
-    if (stage == Stage::Local) pass.reset(new FeedbackPass(*gl, "local", {local_glsl, local_vert}, rows));
-    if (stage == Stage::World) pass.reset(new FeedbackPass(*gl, "world", {limits, world_glsl, world_vert}, rows));
+    const std::string constants = variant.constants() + (stage == Stage::Constrain ? shape.constants() : "");
+    const char* const given = constants.c_str();
+    const auto make =
+        [&](const char* name, std::initializer_list<const char*> source, const std::vector<const char*>& outputs)
+    { pass = std::make_unique<FeedbackPass>(*gl, name, source, outputs); };
+    std::vector<std::string> rotations;
+    for (int joint = 0; joint < shape.chainLength; ++joint)
+        rotations.push_back("rotations[" + std::to_string(joint) + "]");
+    std::vector<const char*> solved;
+    for (const std::string& rotation : rotations)
+        solved.push_back(rotation.c_str());
+    if (stage == Stage::Pose) make("pose", {given, mix_glsl, local_glsl, world_glsl, pose_vert}, rows);
+    if (stage == Stage::Constrain)
+        make("constrain", {given, mix_glsl, local_glsl, world_glsl, constrain_glsl, constrain_vert}, solved);
+    if (stage == Stage::Mix) make("mix", {given, mix_glsl, mix_vert}, {"translation", "rotation", "scale"});
+    if (stage == Stage::Local) make("local", {local_glsl, local_vert}, rows);
+    if (stage == Stage::World) make("world", {limits, world_glsl, world_vert}, rows);
     return *pass;
 }
 

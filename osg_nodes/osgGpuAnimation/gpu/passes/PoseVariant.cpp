@@ -5,7 +5,6 @@
 #include <osgGpuAnimation/gpu/PoseBatch.h>
 
 #include <layout.glsl>
-#include <ShaderSources.h>
 
 #include <algorithm>
 
@@ -75,37 +74,6 @@ void PoseVariant::setMotion(const PackedKeyframes::Track& motion)
     scaleMotion = motion.scale;
     hasExactKeys = motion.hasExactKeys;
     hasCompactKeys = motion.hasCompactKeys;
-}
-
-std::unique_ptr<FeedbackPass> PoseVariant::makePosePass(osg::GLExtensions& gl) const
-{
-    using namespace shaders;
-    const std::string constants = this->constants();
-    return std::unique_ptr<FeedbackPass>(new FeedbackPass(
-        gl, "pose", {constants.c_str(), mix_glsl, local_glsl, world_glsl, pose_vert}, {"row0", "row1", "row2"}));
-}
-
-std::unique_ptr<FeedbackPass> PoseVariant::makeConstraintPass(osg::GLExtensions& gl, const ConstraintShape& shape) const
-{
-    using namespace shaders;
-    const std::string constants = this->constants() + shape.constants();
-    std::vector<std::string> names;
-    for (int joint = 0; joint < shape.chainLength; ++joint)
-        names.push_back("rotations[" + std::to_string(joint) + "]");
-    std::vector<const char*> outputs;
-    for (const std::string& name : names)
-        outputs.push_back(name.c_str());
-    return std::unique_ptr<FeedbackPass>(new FeedbackPass(
-        gl, "constrain", {constants.c_str(), mix_glsl, local_glsl, world_glsl, constrain_glsl, constrain_vert},
-        outputs));
-}
-
-std::unique_ptr<FeedbackPass> PoseVariant::makeMixPass(osg::GLExtensions& gl) const
-{
-    using namespace shaders;
-    const std::string constants = this->constants();
-    return std::unique_ptr<FeedbackPass>(
-        new FeedbackPass(gl, "mix", {constants.c_str(), mix_glsl, mix_vert}, {"translation", "rotation", "scale"}));
 }
 
 std::string PoseVariant::constants() const

@@ -2,9 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/keyframes/PackedKeyframes.h>
-#include <osgGpuAnimation/gpu/FeedbackPass.h>
 
-#include <memory>
 #include <string>
 #include <tuple>
 
@@ -73,16 +71,10 @@ struct PoseVariant
 
     bool operator<(const PoseVariant& other) const { return key() < other.key(); }
 
-    /// The pass of the fused form.
-    std::unique_ptr<FeedbackPass> makePosePass(osg::GLExtensions& gl) const;
-    /// The pass of one constraint in the fused form.
-    std::unique_ptr<FeedbackPass> makeConstraintPass(osg::GLExtensions& gl, const ConstraintShape& shape) const;
-    /// The first pass of the separate form.
-    std::unique_ptr<FeedbackPass> makeMixPass(osg::GLExtensions& gl) const;
-
-private:
     /// GLSL declarations: one constant per member, with the member's name.
     std::string constants() const;
+
+private:
     /// A unique number per variant.
     unsigned int key() const;
 };

@@ -76,20 +76,15 @@ void CharacterDraws::begin(DrawnInstances* counted)
     _counted = counted;
 }
 
-bool CharacterDraws::Look::isOf(const osg::Group& node) const
-{
-    if (children.size() != node.getNumChildren()) return false;
-    for (unsigned int i = 0; i < node.getNumChildren(); ++i)
-        if (children[i] != node.getChild(i)) return false;
-    return true;
-}
-
 CharacterDraws::Look& CharacterDraws::lookOf(const osgUtil::CullVisitor& visitor, const DrawnCharacter& character)
 {
     const auto isIts = [&](const Look& look)
     {
-        return look.set == &character.controller.set() && look.traversalMask == visitor.getTraversalMask() &&
-               look.isOf(character.node);
+        bool isSame = look.set == &character.controller.set() && look.traversalMask == visitor.getTraversalMask() &&
+                      look.children.size() == character.node.getNumChildren();
+        for (unsigned int i = 0; i < character.node.getNumChildren() && isSame; ++i)
+            isSame = look.children[i] == character.node.getChild(i);
+        return isSame;
     };
     if (_lastLook && isIts(*_lastLook)) return *_lastLook;
     std::size_t hash = character.node.getNumChildren();
@@ -99,14 +94,6 @@ CharacterDraws::Look& CharacterDraws::lookOf(const osgUtil::CullVisitor& visitor
     const auto [begin, end] = _looksByHash.equal_range(hash);
     const auto known = std::find_if(begin, end, [&](const auto& each) { return isIts(*each.second); });
     if (known != end) return *(_lastLook = known->second);
-    _looks.push_back(std::make_unique<Look>(newLook(visitor, character)));
-    _lastLook = _looks.back().get();
-    _looksByHash.emplace(hash, _lastLook);
-    return *_lastLook;
-}
-
-CharacterDraws::Look CharacterDraws::newLook(const osgUtil::CullVisitor& visitor, const DrawnCharacter& character) const
-{
     Look look{_looks.size(), &character.controller.set(), visitor.getTraversalMask(), {}};
     for (unsigned int i = 0; i < character.node.getNumChildren(); ++i)
     {
@@ -119,7 +106,10 @@ CharacterDraws::Look CharacterDraws::newLook(const osgUtil::CullVisitor& visitor
             look.shared.push_back(mesh);
     }
     forEachMesh(character.node, [&](const SkinnedGeometry& mesh) { look.box.expandBy(mesh.getBoundingBox()); });
-    return look;
+    _looks.push_back(std::make_unique<Look>(std::move(look)));
+    _lastLook = _looks.back().get();
+    _looksByHash.emplace(hash, _lastLook);
+    return *_lastLook;
 }
 
 void CharacterDraws::draw(osgUtil::CullVisitor& visitor, LodView& view, const DrawnCharacter& character,
@@ -184,9 +174,8 @@ CharacterDraws::Group& CharacterDraws::groupOf(osgUtil::CullVisitor& visitor, co
 {
     const GroupKey key{visitor.getCurrentRenderBin(), visitor.getProjectionMatrix(), &set, slot, level};
     std::vector<std::unique_ptr<Group>>& groups = _groups[visitor.getCurrentStateGraph()];
-    auto known =
-        std::find_if(groups.begin(), groups.end(),
-                     [&](const std::unique_ptr<Group>& group) { return group->key.members() == key.members(); });
+    auto known = std::find_if(groups.begin(), groups.end(),
+                              [&](const std::unique_ptr<Group>& group) { return group->key == key; });
     if (known == groups.end()) known = groups.insert(known, std::make_unique<Group>(Group{key}));
     return **known;
 }
@@ -223,7 +212,8 @@ std::shared_ptr<std::vector<InstanceTransform>> CharacterDraws::open(osgUtil::Cu
         PaletteBinding*& binding = known->second;
         if (!binding)
         {
-            const DrawState placed = frame.instancedState(*group.key.set, group.key.slot, group.key.level);
+            const auto& [bin, projection, set, slot, level] = group.key;
+            const DrawState placed = frame.instancedState(*set, slot, level);
             binding = placed.binding;
             if (_counted) _counted->add(*mesh, *binding);
             visitor.pushStateSet(placed.stateSet);

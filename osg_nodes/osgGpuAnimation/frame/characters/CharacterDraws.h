@@ -101,20 +101,11 @@ private:
         bool hasOthers = false;                 ///< true: some children are drawn normally
         osg::BoundingBox box{};                 ///< of the meshes
         std::optional<LodRange> range{};        ///< empty: not asked for yet
-
-        bool isOf(const osg::Group& node) const;
     };
-    /// What the characters of a group have in common, besides their state graph.
-    struct GroupKey
-    {
-        const osgUtil::RenderBin* bin;
-        const osg::RefMatrix* projection;
-        const AnimationSet* set;
-        std::size_t slot;
-        int level; ///< of detail
-
-        auto members() const { return std::tie(bin, projection, set, slot, level); }
-    };
+    /// What the characters of a group have in common, besides their state graph: bin, projection, set, slot, level of
+    /// detail.
+    using GroupKey =
+        std::tuple<const osgUtil::RenderBin*, const osg::RefMatrix*, const AnimationSet*, std::size_t, int>;
     /// Characters that differ in poses, placements and looks only.
     struct Group
     {
@@ -141,7 +132,6 @@ private:
     };
 
     Look& lookOf(const osgUtil::CullVisitor& visitor, const DrawnCharacter& character);
-    Look newLook(const osgUtil::CullVisitor& visitor, const DrawnCharacter& character) const;
     int levelOf(osgUtil::CullVisitor& visitor, LodView& view, const DrawnCharacter& character, Look& look,
                 const osg::Matrixd& toVisitor);
     Group& groupOf(osgUtil::CullVisitor& visitor, const AnimationSet& set, std::size_t slot, int level);

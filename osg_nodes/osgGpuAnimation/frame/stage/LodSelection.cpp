@@ -85,18 +85,18 @@ void LodView::find(osgUtil::CullVisitor& visitor)
     _toEye = _culled->getInverseViewMatrix() * osg::computeLocalToEye(root->getViewMatrix(), above, false);
 }
 
-LodScale::Measure::Measure(const osg::Vec4& halfPixel, float pixelError)
-    : errorAt(2.0f * pixelError * glm::vec4(halfPixel.x(), halfPixel.y(), halfPixel.z(), halfPixel.w())),
-      slope(glm::length(glm::vec3(errorAt)))
-{
-}
-
 LodScale::LodScale(osgUtil::CullVisitor& visitor, LodView& view, float pixelError, const LodRange& range)
     : _range(range)
 {
     if (!(pixelError > 0.0f)) return;
-    _seen = Measure(view.pixelSizeVector(visitor), pixelError);
-    _own = Measure(visitor.getCurrentCullingSet().getPixelSizeVector(), pixelError);
+    const auto measure = [pixelError](const osg::Vec4& halfPixel)
+    {
+        const glm::vec4 errorAt =
+            2.0f * pixelError * glm::vec4(halfPixel.x(), halfPixel.y(), halfPixel.z(), halfPixel.w());
+        return Measure{errorAt, glm::length(glm::vec3(errorAt))};
+    };
+    _seen = measure(view.pixelSizeVector(visitor));
+    _own = measure(visitor.getCurrentCullingSet().getPixelSizeVector());
 }
 
 } // namespace osgGpuAnimation

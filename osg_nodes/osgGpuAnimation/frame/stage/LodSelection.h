@@ -126,8 +126,6 @@ private:
         glm::vec4 errorAt{0.0f}; ///< · (x, y, z, 1); below 0 behind the eye
         float slope = 0.0f;      ///< the largest change per unit of distance
 
-        Measure() = default;
-        Measure(const osg::Vec4& halfPixel, float pixelError);
         float at(const glm::vec3& place) const { return glm::dot(errorAt, glm::vec4(place, 1.0f)); }
     };
 

@@ -142,8 +142,10 @@ PoseFrame::Batch& PoseFrame::openBatch(const AnimationController& controller, co
     std::vector<Batch*>& batches = _batchesOfSet[&controller.set()];
     const PoseInstruction& instruction = controller.instruction();
     const auto open = std::find_if(batches.begin(), batches.end(),
-                                   [&](const Batch* batch) {
-                                       return batch->isOpen() && batch->content->hasRootMatrix(rootMatrix) &&
+                                   [&](const Batch* batch)
+                                   {
+                                       return !batch->isWhole && !batch->isEvaluated &&
+                                              batch->content->hasRootMatrix(rootMatrix) &&
                                               batch->content->accepts(instruction);
                                    });
     if (open != batches.end()) return **open;

@@ -95,10 +95,7 @@ private:
         const void* crowd = nullptr;
         std::vector<std::uint32_t> instances{}; ///< of the crowd
         bool isEvaluated = false;
-
         bool isWhole = false; ///< of a crowd
-
-        bool isOpen() const { return !isWhole && !isEvaluated; }
     };
     struct Submitted
     {

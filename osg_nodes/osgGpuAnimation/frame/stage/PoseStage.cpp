@@ -86,43 +86,34 @@ void PoseStage::count(osgUtil::CullVisitor& visitor, const SkinnedGeometry& mesh
     if (stage._counted) stage._counted->add(mesh, binding);
 }
 
-// Each cull traversal starts with an empty render stage, so an attached PoseStage belongs to the present traversal.
-bool PoseStage::isAttached(osgUtil::CullVisitor& visitor) const
-{
-    for (const auto& [order, stage] : visitor.getRenderStage()->getPreRenderList())
-        if (stage->getCamera() == this) return true;
-    return false;
-}
-
 PoseStage& PoseStage::current(osgUtil::CullVisitor& visitor)
 {
     PoseStage& stage = of(visitor);
     const unsigned int frameNumber = visitor.getFrameStamp() ? visitor.getFrameStamp()->getFrameNumber() : 0;
-    if (!stage._frame || !stage.isAttached(visitor) || stage._frame->getFrameNumber() != frameNumber)
+    // Each cull traversal starts with an empty render stage, so an attached PoseStage belongs to the present traversal.
+    const auto& attached = visitor.getRenderStage()->getPreRenderList();
+    const auto isIt = [&](const auto& each) { return each.second->getCamera() == &stage; };
+    if (!stage._frame || stage._frame->getFrameNumber() != frameNumber ||
+        std::none_of(attached.begin(), attached.end(), isIt))
         stage.attach(visitor);
     return stage;
-}
-
-void PoseStage::countDraws(osgUtil::CullVisitor& visitor)
-{
-    const osg::Camera* camera = visitor.getRenderStage()->getCamera();
-    const osg::Stats* stats = camera ? camera->getStats() : nullptr;
-    const bool isWanted = stats && stats->collectStats("scene");
-    if (isWanted == _counted.valid())
-    {
-        if (_counted) _counted->clear();
-        return;
-    }
-    removeChildren(0, getNumChildren());
-    _counted = isWanted ? new DrawnInstances : nullptr;
-    if (_counted) addChild(_counted);
 }
 
 // Attaches to the visitor's main stage from any place in the traversal: a shadow camera's stage may run later.
 void PoseStage::attach(osgUtil::CullVisitor& visitor)
 {
     _lodView.clear();
-    countDraws(visitor);
+    const osg::Camera* camera = visitor.getRenderStage()->getCamera();
+    const osg::Stats* stats = camera ? camera->getStats() : nullptr;
+    const bool isCounting = stats && stats->collectStats("scene");
+    if (isCounting != _counted.valid())
+    {
+        removeChildren(0, getNumChildren());
+        _counted = isCounting ? new DrawnInstances : nullptr;
+        if (_counted) addChild(_counted);
+    }
+    else if (_counted)
+        _counted->clear();
     _draws.begin(_counted);
     _frame = nullptr; // allows the frame's storage to be reused
     _frame = PoseFrame::forContext(visitor.getRenderInfo().getContextID(), visitor.getFrameStamp());

@@ -40,9 +40,7 @@ private:
     explicit PoseStage(const osgUtil::CullVisitor& visitor);
     static PoseStage& of(osgUtil::CullVisitor& visitor);
     static PoseStage& current(osgUtil::CullVisitor& visitor);
-    bool isAttached(osgUtil::CullVisitor& visitor) const;
     void attach(osgUtil::CullVisitor& visitor);
-    void countDraws(osgUtil::CullVisitor& visitor);
 
     const osgUtil::CullVisitor* _visitor; ///< the owner: clones of a cull visitor share its user data
     osg::ref_ptr<PoseFrame> _frame;

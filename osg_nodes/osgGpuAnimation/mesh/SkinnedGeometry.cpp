@@ -80,6 +80,65 @@ const PosedMeshSource* posedMeshSource(const osg::NodeVisitor& visitor)
     return nullptr;
 }
 
+using Deltas = osg::ref_ptr<osg::Vec3Array> MorphTarget::*;
+
+glm::dvec3 morphedVector(const SkinnedGeometry& mesh, const osg::Vec3& bind, std::size_t vertex, Deltas deltas,
+                         const std::vector<AffineMatrix>& palette)
+{
+    const std::vector<MorphTarget>& targets = mesh.getMorphTargets();
+    glm::dvec3 sum(bind.x(), bind.y(), bind.z());
+    for (std::size_t target = 0; target < targets.size(); ++target)
+    {
+        const osg::Vec3Array* ofTarget = (targets[target].*deltas).get();
+        const std::size_t entry =
+            static_cast<std::size_t>(mesh.getMorphEntry()) + target / MorphWeights::weightsPerBlock;
+        if (!ofTarget || vertex >= ofTarget->size() || entry >= palette.size()) continue;
+        const std::size_t place = target % MorphWeights::weightsPerBlock;
+        const double weight = palette[entry].rows[place / 4][static_cast<int>(place % 4)];
+        const osg::Vec3& delta = (*ofTarget)[vertex];
+        sum += weight * glm::dvec3(delta.x(), delta.y(), delta.z());
+    }
+    return sum;
+}
+
+template <typename Move>
+void poseVectors(const SkinnedGeometry& mesh, const osg::Array* bind, Deltas deltas,
+                 const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& out, Move move)
+{
+    out.clear();
+    const auto* vectors = dynamic_cast<const osg::Vec3Array*>(bind);
+    if (!vectors || vectors->size() != mesh.getVertexCount()) return;
+    out.reserve(vectors->size());
+    for (std::size_t vertex = 0; vertex < vectors->size(); ++vertex)
+    {
+        glm::dmat4 bindToPose(0.0);
+        mesh.forEachInfluence(vertex,
+                              [&](std::size_t entry, float weight)
+                              {
+                                  if (entry < palette.size()) bindToPose += double(weight) * palette[entry].toColumns();
+                              });
+        out.push_back(move(bindToPose, morphedVector(mesh, (*vectors)[vertex], vertex, deltas, palette)));
+    }
+}
+
+/// The palette entry, in the rest pose, that moves most of the mesh.
+AffineMatrix restMatrix(const SkinnedGeometry& mesh, const AnimationSet& set)
+{
+    std::vector<AffineMatrix> jointToModel, palette;
+    Pose::jointToModel(set, set.restPose(), AffineMatrix(), jointToModel);
+    Pose::palette(set, set.restPose(), jointToModel, palette);
+    std::vector<double> shares(palette.size() + 1); // at least one
+    for (std::size_t vertex = 0; vertex < mesh.getVertexCount(); ++vertex)
+        mesh.forEachInfluence(vertex,
+                              [&](std::size_t entry, float weight)
+                              {
+                                  if (entry < palette.size()) shares[entry] += double(weight);
+                              });
+    const auto largest = std::max_element(shares.begin(), shares.end());
+    const std::size_t entry = static_cast<std::size_t>(largest - shares.begin());
+    return entry < palette.size() ? palette[entry] : AffineMatrix();
+}
+
 } // namespace
 
 SkinnedGeometry::SkinnedGeometry() : _morphDeltas(std::make_unique<MorphDeltas>()), _lod(std::make_unique<MeshLod>())
@@ -215,9 +274,9 @@ void SkinnedGeometry::setMorphTargets(int morph, int entry, std::vector<MorphTar
 void SkinnedGeometry::computePositions(const std::vector<AffineMatrix>& palette,
                                        std::vector<glm::dvec3>& outPositions) const
 {
-    pose(getVertexArray(), &MorphTarget::positions, palette, outPositions,
-         [](const glm::dmat4& bindToPose, const glm::dvec3& position)
-         { return glm::dvec3(bindToPose * glm::dvec4(position, 1.0)); });
+    poseVectors(*this, getVertexArray(), &MorphTarget::positions, palette, outPositions,
+                [](const glm::dmat4& bindToPose, const glm::dvec3& position)
+                { return glm::dvec3(bindToPose * glm::dvec4(position, 1.0)); });
 }
 
 void SkinnedGeometry::computeNormals(const std::vector<AffineMatrix>& palette,
@@ -230,45 +289,7 @@ void SkinnedGeometry::computeNormals(const std::vector<AffineMatrix>& palette,
                                    glm::cross(linear[0], linear[1]));
         return (glm::dot(linear[0], cofactors[0]) < 0.0 ? -1.0 : 1.0) * (cofactors * normal);
     };
-    pose(getNormalArray(), &MorphTarget::normals, palette, outNormals, turned);
-}
-
-template <typename Move>
-void SkinnedGeometry::pose(const osg::Array* bind, osg::ref_ptr<osg::Vec3Array> MorphTarget::*deltas,
-                           const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& out, Move move) const
-{
-    out.clear();
-    const auto* vectors = dynamic_cast<const osg::Vec3Array*>(bind);
-    if (!vectors || vectors->size() != getVertexCount()) return;
-    out.reserve(vectors->size());
-    for (std::size_t vertex = 0; vertex < vectors->size(); ++vertex)
-    {
-        glm::dmat4 bindToPose(0.0);
-        forEachInfluence(vertex,
-                         [&](std::size_t entry, float weight)
-                         {
-                             if (entry < palette.size()) bindToPose += double(weight) * palette[entry].toColumns();
-                         });
-        out.push_back(move(bindToPose, morphed((*vectors)[vertex], vertex, deltas, palette)));
-    }
-}
-
-glm::dvec3 SkinnedGeometry::morphed(const osg::Vec3& bind, std::size_t vertex,
-                                    osg::ref_ptr<osg::Vec3Array> MorphTarget::*deltas,
-                                    const std::vector<AffineMatrix>& palette) const
-{
-    glm::dvec3 sum(bind.x(), bind.y(), bind.z());
-    for (std::size_t target = 0; target < _morphTargets.size(); ++target)
-    {
-        const osg::Vec3Array* ofTarget = (_morphTargets[target].*deltas).get();
-        const std::size_t entry = static_cast<std::size_t>(_morphEntry) + target / MorphWeights::weightsPerBlock;
-        if (!ofTarget || vertex >= ofTarget->size() || entry >= palette.size()) continue;
-        const std::size_t place = target % MorphWeights::weightsPerBlock;
-        const double weight = palette[entry].rows[place / 4][static_cast<int>(place % 4)];
-        const osg::Vec3& delta = (*ofTarget)[vertex];
-        sum += weight * glm::dvec3(delta.x(), delta.y(), delta.z());
-    }
-    return sum;
+    poseVectors(*this, getNormalArray(), &MorphTarget::normals, palette, outNormals, turned);
 }
 
 SkinnedGeometry::Colors SkinnedGeometry::getColors() const
@@ -283,24 +304,6 @@ SkinnedGeometry::Colors SkinnedGeometry::getColors() const
     return isWhite && !areMorphed ? Colors::White : Colors::Array;
 }
 
-/// The palette entry, in the rest pose, that moves most of the mesh.
-AffineMatrix SkinnedGeometry::restMatrix(const AnimationSet& set) const
-{
-    std::vector<AffineMatrix> jointToModel, palette;
-    Pose::jointToModel(set, set.restPose(), AffineMatrix(), jointToModel);
-    Pose::palette(set, set.restPose(), jointToModel, palette);
-    std::vector<double> shares(palette.size() + 1); // at least one
-    for (std::size_t vertex = 0; vertex < getVertexCount(); ++vertex)
-        forEachInfluence(vertex,
-                         [&](std::size_t entry, float weight)
-                         {
-                             if (entry < palette.size()) shares[entry] += double(weight);
-                         });
-    const auto largest = std::max_element(shares.begin(), shares.end());
-    const std::size_t entry = static_cast<std::size_t>(largest - shares.begin());
-    return entry < palette.size() ? palette[entry] : AffineMatrix();
-}
-
 void SkinnedGeometry::drawImplementation(osg::RenderInfo& renderInfo) const
 {
     osg::State& state = *renderInfo.getState();
@@ -309,14 +312,37 @@ void SkinnedGeometry::drawImplementation(osg::RenderInfo& renderInfo) const
     if (!binding || !binding->getAnimationSet()) return;
     const PosePipeline* pipeline = PosePipeline::of(state);
     if (!pipeline) return;
-    const MeshVertexArrays arrays(state);
+    const MeshVertexArrays scope(state);
     InstanceRuns runs(state, *pipeline, *binding);
     if (!runs.isSkinned())
     {
         reportRestPose(*this);
-        runs.moveAsOnePiece(restMatrix(*binding->getAnimationSet()));
+        runs.moveAsOnePiece(restMatrix(*this, *binding->getAnimationSet()));
     }
-    drawInstances(renderInfo, *binding, runs);
+    // As osg::Geometry::drawImplementation from here on, except for the primitives, which would draw their own number
+    // of instances instead of the frame's.
+    InstanceRuns::Run run = runs.at(0);
+    if (run.place.texture == 0 || containsDeprecatedData()) return;
+    bindPalette(state, run.place); // before the arrays: the upload of morph targets binds a buffer
+    const bool usesBuffers = state.useVertexBufferObject(_supportsVertexBufferObjects && _useVertexBufferObjects);
+    const bool usesArrayObject = usesBuffers && state.useVertexArrayObject(_useVertexArrayObject);
+    osg::VertexArrayState* arrays = state.getCurrentVertexArrayState();
+    arrays->setVertexBufferObjectSupported(usesBuffers);
+    drawVertexArraysImplementation(renderInfo);
+    for (std::size_t first = 0; run.place.texture != 0;)
+    {
+        runs.use(first);
+        drawPrimitives(state, static_cast<int>(run.count), binding->getLevel());
+        first += run.count;
+        if (first >= binding->getDrawnCount()) break;
+        run = runs.at(first);
+        bindPalette(state, run.place);
+    }
+    if (usesBuffers && !usesArrayObject)
+    {
+        arrays->unbindVertexBufferObject();
+        arrays->unbindElementBufferObject();
+    }
 }
 
 osg::VertexArrayState* SkinnedGeometry::createVertexArrayStateImplementation(osg::RenderInfo& renderInfo) const
@@ -334,36 +360,6 @@ void SkinnedGeometry::compileGLObjects(osg::RenderInfo& renderInfo) const
     // OSG unbinds the array buffer and leaves it in the record.
     if (osg::VertexArrayState* arrays = _vertexArrayStateList[renderInfo.getContextID()].get())
         arrays->setCurrentVertexBufferObject(nullptr);
-}
-
-// As osg::Geometry::drawImplementation except for the primitives, which would draw their own number of instances
-// instead of the frame's.
-void SkinnedGeometry::drawInstances(osg::RenderInfo& renderInfo, const PaletteBinding& binding,
-                                    const InstanceRuns& runs) const
-{
-    InstanceRuns::Run run = runs.at(0);
-    if (run.place.texture == 0 || containsDeprecatedData()) return;
-    osg::State& state = *renderInfo.getState();
-    bindPalette(state, run.place); // before the arrays: the upload of morph targets binds a buffer
-    const bool usesBuffers = state.useVertexBufferObject(_supportsVertexBufferObjects && _useVertexBufferObjects);
-    const bool usesArrayObject = usesBuffers && state.useVertexArrayObject(_useVertexArrayObject);
-    osg::VertexArrayState* arrays = state.getCurrentVertexArrayState();
-    arrays->setVertexBufferObjectSupported(usesBuffers);
-    drawVertexArraysImplementation(renderInfo);
-    for (std::size_t first = 0; run.place.texture != 0;)
-    {
-        runs.use(first);
-        drawPrimitives(state, static_cast<int>(run.count), binding.getLevel());
-        first += run.count;
-        if (first >= binding.getDrawnCount()) break;
-        run = runs.at(first);
-        bindPalette(state, run.place);
-    }
-    if (usesBuffers && !usesArrayObject)
-    {
-        arrays->unbindVertexBufferObject();
-        arrays->unbindElementBufferObject();
-    }
 }
 
 void SkinnedGeometry::drawPrimitives(osg::State& state, int count, int level) const

@@ -15,11 +15,7 @@
 namespace osgGpuAnimation
 {
 
-class InstanceRuns;
-class LodLevels;
 class MeshLod;
-class PaletteBinding;
-class SkinnedGeometry;
 struct MorphDeltas;
 struct PalettePlace;
 
@@ -127,15 +123,8 @@ protected:
 private:
     friend struct MeshDetail;
 
-    void drawInstances(osg::RenderInfo& renderInfo, const PaletteBinding& binding, const InstanceRuns& runs) const;
     void drawPrimitives(osg::State& state, int count, int level) const;
     void bindPalette(osg::State& state, const PalettePlace& place) const;
-    AffineMatrix restMatrix(const AnimationSet& set) const;
-    template <typename Move>
-    void pose(const osg::Array* bind, osg::ref_ptr<osg::Vec3Array> MorphTarget::*deltas,
-              const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& out, Move move) const;
-    glm::dvec3 morphed(const osg::Vec3& bind, std::size_t vertex, osg::ref_ptr<osg::Vec3Array> MorphTarget::*deltas,
-                       const std::vector<AffineMatrix>& palette) const;
 
     int _influences = 1;  ///< the largest number per vertex
     int _rigidEntry = -1; ///< the entry that moves all vertices; -1: influences are per vertex

@@ -208,9 +208,15 @@ PrefilteredMap::PrefilteredMap(const RadianceCube& radiance) : _radiance(&radian
     setResizeNonPowerOfTwoHint(false);
 }
 
-void PrefilteredMap::allocate(osg::State& state) const
+void PrefilteredMap::apply(osg::State& state) const
 {
     const unsigned int contextId = state.getContextID();
+    if (TextureObject* existing = getTextureObject(contextId))
+    {
+        existing->bind();
+        if (getTextureParameterDirty(contextId)) applyTexParameters(GL_TEXTURE_CUBE_MAP, state);
+        return;
+    }
     const osg::ref_ptr<TextureObject> made = generateTextureObject(
         this, contextId, GL_TEXTURE_CUBE_MAP, levels, GL_RGBA16F_ARB, RadianceCube::side, RadianceCube::side, 1, 0);
     _textureObjectBuffer[contextId] = made;
@@ -218,18 +224,6 @@ void PrefilteredMap::allocate(osg::State& state) const
     made->bind();
     applyTexParameters(GL_TEXTURE_CUBE_MAP, state);
     allocateLevels(levels, nullptr);
-}
-
-void PrefilteredMap::apply(osg::State& state) const
-{
-    if (TextureObject* existing = getTextureObject(state.getContextID()))
-    {
-        existing->bind();
-        if (getTextureParameterDirty(state.getContextID())) applyTexParameters(GL_TEXTURE_CUBE_MAP, state);
-        return;
-    }
-    allocate(state);
-    TextureObject* made = getTextureObject(state.getContextID());
     const osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
     const bool canDraw = gl.glVersion >= 3.3f;
     if (!canDraw)

@@ -29,8 +29,6 @@ protected:
     ~PrefilteredMap() override = default;
 
 private:
-    void allocate(osg::State& state) const;
-
     osg::ref_ptr<const RadianceCube> _radiance; ///< kept for further contexts
 };
 

@@ -151,9 +151,18 @@ void VariantMeshes::show(osg::Group& group, const std::string& variant)
 
 void VariantMeshes::setVisible(osg::Group& group, const std::vector<osg::Geometry*>& meshes, bool isVisible)
 {
+    // All levels are shown or hidden together with one of them.
+    const auto setLevelsVisible = [&](osg::LOD& levels)
+    {
+        std::vector<osg::Geometry*> all;
+        for (unsigned int level = 0; level < levels.getNumChildren(); ++level)
+            if (auto* mesh = dynamic_cast<osg::Geometry*>(levels.getChild(level))) all.push_back(mesh);
+        if (std::find_first_of(all.begin(), all.end(), meshes.begin(), meshes.end()) != all.end())
+            setVisible(levels, all, isVisible);
+    };
     for (unsigned int i = 0; i < group.getNumChildren(); ++i)
     {
-        changeLevels(group, i, [&](osg::LOD& levels) { setLevelsVisible(levels, meshes, isVisible); });
+        changeLevels(group, i, setLevelsVisible);
         auto* mesh = dynamic_cast<osg::Geometry*>(group.getChild(i));
         if (!mesh || std::find(meshes.begin(), meshes.end(), mesh) == meshes.end()) continue;
         if ((mesh->getNodeMask() != 0) == isVisible) continue;
@@ -161,16 +170,6 @@ void VariantMeshes::setVisible(osg::Group& group, const std::vector<osg::Geometr
         const osg::ref_ptr<osg::Geometry> shown = copyOf(*mesh, mesh->getStateSet(), isVisible);
         exchangeChild(group, i, *mesh, *shown);
     }
-}
-
-/// All levels are shown or hidden together with one of them.
-void VariantMeshes::setLevelsVisible(osg::LOD& levels, const std::vector<osg::Geometry*>& meshes, bool isVisible)
-{
-    std::vector<osg::Geometry*> all;
-    for (unsigned int level = 0; level < levels.getNumChildren(); ++level)
-        if (auto* mesh = dynamic_cast<osg::Geometry*>(levels.getChild(level))) all.push_back(mesh);
-    if (std::find_first_of(all.begin(), all.end(), meshes.begin(), meshes.end()) != all.end())
-        setVisible(levels, all, isVisible);
 }
 
 /// The node mask of the mesh while it is visible: the copies know that of a hidden one.

@@ -51,7 +51,6 @@ public:
 
 private:
     osg::ref_ptr<osg::Geometry> copyOf(osg::Geometry& mesh, osg::StateSet* state, bool isVisible);
-    void setLevelsVisible(osg::LOD& levels, const std::vector<osg::Geometry*>& meshes, bool isVisible);
     osg::Node::NodeMask visibleMask(const osg::Geometry& mesh) const;
 
     /// The user data that copies share, the StateSet, the node mask while it is visible, and whether it is.

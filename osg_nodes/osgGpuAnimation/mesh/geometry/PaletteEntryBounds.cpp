@@ -99,7 +99,11 @@ void PaletteEntryBounds::add(const SkinnedGeometry& mesh)
     if (!vertices) return;
     if (mesh.getRigidEntry() >= 0 && mesh.getMorph() < 0)
     {
-        addRigid(*vertices, static_cast<std::size_t>(mesh.getRigidEntry()));
+        const auto entry = static_cast<std::size_t>(mesh.getRigidEntry());
+        const auto [known, isNew] = _bindBoxes.try_emplace(vertices);
+        for (std::size_t vertex = 0; isNew && vertex < vertices->size(); ++vertex)
+            known->second.add(toGlm((*vertices)[vertex]));
+        if (entry < _boxes.size()) _boxes[entry].add(known->second);
         return;
     }
     std::vector<WeightRange> ranges;
@@ -116,14 +120,6 @@ void PaletteEntryBounds::add(const SkinnedGeometry& mesh)
                                   _reaches[entry] = std::max(_reaches[entry], reach);
                               });
     }
-}
-
-void PaletteEntryBounds::addRigid(const osg::Vec3Array& vertices, std::size_t entry)
-{
-    const auto [known, isNew] = _bindBoxes.try_emplace(&vertices);
-    for (std::size_t vertex = 0; isNew && vertex < vertices.size(); ++vertex)
-        known->second.add(toGlm(vertices[vertex]));
-    if (entry < _boxes.size()) _boxes[entry].add(known->second);
 }
 
 MixBounds::Boxes mixBoxesOf(const std::vector<const SkinnedGeometry*>& meshes, const AnimationSet& set)

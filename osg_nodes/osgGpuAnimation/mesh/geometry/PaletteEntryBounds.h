@@ -119,8 +119,6 @@ public:
     const std::vector<float>& reaches() const { return _reaches; }
 
 private:
-    void addRigid(const osg::Vec3Array& vertices, std::size_t entry);
-
     const AnimationSet* _set;
     Weights _weights;
     EntryBoxes _boxes;

@@ -67,7 +67,10 @@ MergedParts::MergedParts(Parts parts, const Palettes& palettes, std::size_t keyP
     _surface.stop = stop;
     _surface.isTwoSided = _parts.front().color.isTwoSided();
     addSurface(keepsParts);
-    addTriangles();
+    for (std::size_t part = 0; part < _parts.size(); ++part)
+        for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : _parts[part].mesh->getPrimitiveSetList())
+            for (const std::uint32_t vertex : LodLevels::trianglesOf(primitives, _parts[part].mesh->getVertexCount()))
+                _indices.push_back(_firstOf[part] + vertex);
     if (_surface.vertexCount() > maxVertices || _indices.size() > 3 * maxTriangles || _surface.isStopped()) return;
     for (const std::vector<glm::vec3>& pose : _surface.poses)
         if (!std::all_of(pose.begin(), pose.end(), isPlaced)) return;
@@ -95,14 +98,6 @@ void MergedParts::addSurface(bool keepsParts)
         }
         if (pose.size() > maxVertices || _surface.isStopped()) return;
     }
-}
-
-void MergedParts::addTriangles()
-{
-    for (std::size_t part = 0; part < _parts.size(); ++part)
-        for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : _parts[part].mesh->getPrimitiveSetList())
-            for (const std::uint32_t vertex : LodLevels::trianglesOf(primitives, _parts[part].mesh->getVertexCount()))
-                _indices.push_back(_firstOf[part] + vertex);
 }
 
 MergedParts::Source MergedParts::sourceOf(std::uint32_t vertex) const

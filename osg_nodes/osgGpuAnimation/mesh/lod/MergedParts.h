@@ -87,7 +87,6 @@ private:
 
     Source sourceOf(std::uint32_t vertex) const;
     void addSurface(bool keepsParts);
-    void addTriangles();
     glm::dmat4 matrixOf(std::uint32_t vertex, const std::vector<AffineMatrix>& palette) const;
     std::vector<glm::dvec3> bindPositionsOf(const CoarseMesh& mesh) const;
     void setInfluences(const CoarseMesh& mesh, SkinnedGeometry& geometry) const;

@@ -5,6 +5,7 @@
 
 #include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/JointMask.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
 
 #include <glm/geometric.hpp>
 

@@ -123,16 +123,6 @@ NodeConstraint AnimatedCharacter::constraint(const std::string& name)
     return {_controller.get(), name, _axes->fileToNode, toWorld(*this, true), *_worldTargets, 0};
 }
 
-void AnimatedCharacter::takeWorldTargets()
-{
-    const osg::Matrixd worldToFile =
-        osg::Matrixd::inverse(toWorld(*this, true)) * osg::Matrixd::inverse(_axes->fileToNode);
-    _worldTargets->passOn(
-        [&](WorldTargets::Instance) -> WorldTargets::Owner {
-            return {_controller.get(), worldToFile};
-        });
-}
-
 Result<WornGarment> AnimatedCharacter::wear(osg::Node* garment)
 {
     AnimatedCharacter* source = garment ? findCharacter(*garment) : nullptr;
@@ -234,8 +224,14 @@ void AnimatedCharacter::update(double simulationTime)
     updateBounds();
     _meshes.showProperties();
     _meshes.updateLevels();
-    if (!_worldTargets->isEmpty())
-        runAfterUpdateOf(*this, [](AnimatedCharacter& character) { character.takeWorldTargets(); });
+    const auto takeWorldTargets = [](AnimatedCharacter& character)
+    {
+        const WorldTargets::Owner owner{character._controller.get(),
+                                        osg::Matrixd::inverse(toWorld(character, true)) *
+                                            osg::Matrixd::inverse(character._axes->fileToNode)};
+        character._worldTargets->passOn([&](WorldTargets::Instance) { return owner; });
+    };
+    if (!_worldTargets->isEmpty()) runAfterUpdateOf(*this, takeWorldTargets);
     if (events.isEmpty()) return;
     runAfterUpdate(*this,
                    [events, character = osg::observer_ptr<AnimatedCharacter>(this)]

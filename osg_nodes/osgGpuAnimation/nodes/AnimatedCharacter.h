@@ -182,7 +182,6 @@ private:
     osg::BoundingBox boundsOfAllClips() const;
     void setMeshBounds();
     void updateBounds();
-    void takeWorldTargets();
     osg::BoundingBox boundsOf(const std::vector<PlayedClip>& played) const;
     void growMeshes(const osg::BoundingBox& box);
 

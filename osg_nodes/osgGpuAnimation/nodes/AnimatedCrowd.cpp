@@ -271,18 +271,6 @@ Result<void> AnimatedCrowd::setModelTransforms(Instance instance, std::size_t la
     return poseJoints(*getController(instance), layer, jointToCrowd, fileToSpace(_instances->indexOf(instance)));
 }
 
-void AnimatedCrowd::takeWorldTargets()
-{
-    const osg::Matrixd worldToSpace = osg::Matrixd::inverse(toWorld(*this, false));
-    _worldTargets->passOn(
-        [&](Instance instance) -> WorldTargets::Owner
-        {
-            const std::size_t index = _instances->indexOf(instance);
-            if (index == CrowdInstances::none) return {};
-            return {&_instances->controller(index), worldToSpace * osg::Matrixd::inverse(fileToSpace(index))};
-        });
-}
-
 osg::Matrixd AnimatedCrowd::getPlacement(Instance instance) const
 {
     const std::size_t index = _instances->indexOf(instance);
@@ -313,7 +301,19 @@ void AnimatedCrowd::update(double simulationTime)
     prepareSharedPoses();
     PendingEvents events;
     if (_instances->advance(step, events)) dirtyBound();
-    if (!_worldTargets->isEmpty()) runAfterUpdateOf(*this, [](AnimatedCrowd& crowd) { crowd.takeWorldTargets(); });
+    const auto takeWorldTargets = [](AnimatedCrowd& crowd)
+    {
+        const osg::Matrixd worldToSpace = osg::Matrixd::inverse(toWorld(crowd, false));
+        crowd._worldTargets->passOn(
+            [&](Instance instance) -> WorldTargets::Owner
+            {
+                const std::size_t index = crowd._instances->indexOf(instance);
+                if (index == CrowdInstances::none) return {};
+                return {&crowd._instances->controller(index),
+                        worldToSpace * osg::Matrixd::inverse(crowd.fileToSpace(index))};
+            });
+    };
+    if (!_worldTargets->isEmpty()) runAfterUpdateOf(*this, takeWorldTargets);
     if (!events.isEmpty()) runAfterUpdate(*this, [events] { events.deliver(); });
 }
 

@@ -9,7 +9,6 @@
 #include <osgGpuAnimation/nodes/NodeConstraint.h>
 
 #include <osg/Transform>
-#include <osgUtil/CullVisitor>
 
 #include <cstdint>
 #include <functional>
@@ -174,7 +173,6 @@ private:
     void showOutfits();
     osg::ref_ptr<osg::Geometry> getPosedMesh(const SkinnedGeometry& mesh, bool withNormals) const override;
     osg::ref_ptr<osg::Geometry> posedMesh(std::size_t index, const SkinnedGeometry& mesh, bool withNormals) const;
-    void takeWorldTargets();
     void prepareSharedPoses();
     osg::Matrixd fileToSpace(std::size_t index) const;
 

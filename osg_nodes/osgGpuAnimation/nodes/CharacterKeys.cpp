@@ -138,7 +138,12 @@ bool CharacterKeys::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIAction
     }
     if (event.getEventType() != osgGA::GUIEventAdapter::KEYDOWN) return false;
     PoseStatistics::addLines(action);
-    if (isFirstTime(event, *object) && press(event.getKey(), *character)) action.requestRedraw();
+    // A character with several parents receives each event once per parent.
+    if (_event != &event) _handled.clear();
+    _event = &event;
+    if (std::find(_handled.begin(), _handled.end(), object) != _handled.end()) return false;
+    _handled.push_back(object);
+    if (press(event.getKey(), *character)) action.requestRedraw();
     return false;
 }
 
@@ -154,16 +159,6 @@ void CharacterKeys::addToHelp(osgGA::GUIActionAdapter& action)
     const auto isKeys = [](const auto& handler)
     { return dynamic_cast<const CharacterKeys*>(handler.get()) != nullptr; };
     if (std::none_of(handlers.begin(), handlers.end(), isKeys)) view->addEventHandler(this);
-}
-
-// A character with several parents receives each event once per parent.
-bool CharacterKeys::isFirstTime(const osgGA::GUIEventAdapter& event, const osg::Object& character)
-{
-    if (_event != &event) _handled.clear();
-    _event = &event;
-    if (std::find(_handled.begin(), _handled.end(), &character) != _handled.end()) return false;
-    _handled.push_back(&character);
-    return true;
 }
 
 void CharacterKeys::getUsage(osg::ApplicationUsage& usage) const

@@ -63,7 +63,6 @@ protected:
 
 private:
     void addToHelp(osgGA::GUIActionAdapter& action);
-    bool isFirstTime(const osgGA::GUIEventAdapter& event, const osg::Object& character);
 
     double _fadeSeconds = 0.3;
     osg::observer_ptr<osg::View> _helped;              ///< the last view that addToHelp() has seen

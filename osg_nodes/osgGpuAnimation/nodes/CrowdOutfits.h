@@ -16,7 +16,6 @@
 namespace osgGpuAnimation
 {
 
-class AnimationSet;
 class CrowdInstances;
 class OutfitMeshes;
 

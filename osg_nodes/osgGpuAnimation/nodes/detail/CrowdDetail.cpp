@@ -17,25 +17,4 @@ Result<void> CrowdDetail::setAnimationSet(AnimatedCrowd& crowd, std::shared_ptr<
     return crowd._meshes.setPixelError(crowd._meshes.getPixelError());
 }
 
-const CrowdInstances& CrowdDetail::instances(const AnimatedCrowd& crowd)
-{
-    return *crowd._instances;
-}
-
-const osg::Group& CrowdDetail::drawnMeshes(const AnimatedCrowd& crowd)
-{
-    return crowd._meshes.drawn();
-}
-
-const std::shared_ptr<const CharacterLevels>& CrowdDetail::levels(const AnimatedCrowd& crowd)
-{
-    return crowd._meshes._levels;
-}
-
-void CrowdDetail::setLevels(AnimatedCrowd& crowd, std::shared_ptr<const CharacterLevels> levels)
-{
-    crowd._meshes._levels = std::move(levels);
-    crowd._meshes.showLevels();
-}
-
 } // namespace osgGpuAnimation

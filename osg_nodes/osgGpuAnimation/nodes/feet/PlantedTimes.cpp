@@ -68,15 +68,6 @@ const std::vector<PlantedTimes::Contact>& PlantedTimes::contactsOf(const Animati
     return *_contacts[index];
 }
 
-bool PlantedTimes::plants(const AnimationSet& set, const ClipPlayback& playback)
-{
-    const std::vector<Contact>& contacts = contactsOf(set, playback.clip());
-    return !(playback.duration() > 0.0) ||
-           std::any_of(contacts.begin(), contacts.end(),
-                       [&](const Contact& contact)
-                       { return isWithin(contact.time, playback.shownTime(), playback.duration()); });
-}
-
 /// Clips that run backwards or back and forth have no landing that is foreseen.
 void PlantedTimes::findLanding(const AnimationSet& set, const ClipPlayback& playback, Now& now)
 {
@@ -95,6 +86,13 @@ void PlantedTimes::findLanding(const AnimationSet& set, const ClipPlayback& play
 PlantedTimes::Now PlantedTimes::now(const AnimationController& controller)
 {
     const AnimationSet& set = controller.set();
+    const auto plants = [&](const ClipPlayback& playback)
+    {
+        const std::vector<Contact>& contacts = contactsOf(set, playback.clip());
+        const auto isNow = [&](const Contact& contact)
+        { return isWithin(contact.time, playback.shownTime(), playback.duration()); };
+        return !(playback.duration() > 0.0) || std::any_of(contacts.begin(), contacts.end(), isNow);
+    };
     Now now;
     for (std::size_t i = controller.layerCount(); i-- > 0;)
     {
@@ -107,7 +105,7 @@ PlantedTimes::Now PlantedTimes::now(const AnimationController& controller)
             const ClipMixer::ActiveClip& active = layer.mixer().activeClip(v);
             if (active.playback.clip() < 0 || !(active.share > 0.0)) continue;
             shares += active.share;
-            if (plants(set, active.playback)) planted += active.share;
+            if (plants(active.playback)) planted += active.share;
             if (!heaviest || active.share > heaviest->share) heaviest = &active;
         }
         if (!heaviest) continue;

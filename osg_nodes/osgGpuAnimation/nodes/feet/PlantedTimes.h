@@ -3,7 +3,6 @@
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/ClipMixer.h>
-#include <osgGpuAnimation/authoring/ClipBuilder.h>
 #include <osgGpuAnimation/authoring/FootContacts.h>
 
 #include <limits>
@@ -49,7 +48,6 @@ private:
     };
 
     const std::vector<Contact>& contactsOf(const AnimationSet& set, int clip);
-    bool plants(const AnimationSet& set, const ClipPlayback& playback);
     void findLanding(const AnimationSet& set, const ClipPlayback& playback, Now& now);
 
     std::size_t _ankle, _contact;

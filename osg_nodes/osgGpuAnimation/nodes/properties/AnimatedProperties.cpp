@@ -178,7 +178,10 @@ osg::StateSet* UnanimatedMeshes::stateAtRest(osg::StateSet* state)
     own = ownState(*state);
     own->setDataVariance(osg::Object::STATIC);
     removeMark(*own, materialMark);
-    if (_properties) _properties->setMaterials(*own, *material);
+    if (!_properties) return own;
+    for (const AnimatedProperties::Property& property : _properties->_properties)
+        if (property.pointer.member->object == Object::Material && property.pointer.index == *material)
+            _properties->setMaterial(*own, property.pointer);
     return own;
 }
 
@@ -337,13 +340,6 @@ bool AnimatedProperties::isVisible(const std::vector<int>& nodes) const
     return std::all_of(nodes.begin(), nodes.end(), [&](int node) { return valueOf(visible, node)[0] >= 0.5f; });
 }
 
-void AnimatedProperties::setMaterials(osg::StateSet& state, int material) const
-{
-    for (const Property& property : _properties)
-        if (property.pointer.member->object == Object::Material && property.pointer.index == material)
-            setMaterial(state, property.pointer);
-}
-
 void AnimatedProperties::setMaterial(osg::StateSet& state, const PropertyPointer& pointer) const
 {
     const PropertyMember& member = *pointer.member;
@@ -422,18 +418,6 @@ void AnimatedProperties::setCamera(osg::CameraView& view, const PropertyPointer&
         view.setUserValue(orthographicHeightName, 2.0 * std::abs(static_cast<double>(value)));
 }
 
-void AnimatedProperties::setVisibility()
-{
-    for (const Hidable& hidable : _hidables)
-    {
-        const bool isShown = isVisible(hidable.nodes);
-        const osg::Node::NodeMask mask = hidable.mesh->getNodeMask();
-        if (isShown == (mask != 0)) continue;
-        if (!isShown) storeMask(*hidable.mesh, mask);
-        hidable.mesh->setNodeMask(isShown ? applicationMask(*hidable.mesh) : 0);
-    }
-}
-
 void AnimatedProperties::apply(const AnimationSet& set, const PoseInstruction& instruction)
 {
     Pose::properties(set, instruction, _numbers);
@@ -458,8 +442,16 @@ void AnimatedProperties::apply(const AnimationSet& set, const PoseInstruction& i
     }
     for (Light& light : _lights)
         setLight(light, std::find(lights.begin(), lights.end(), light.index) != lights.end());
-    if (isVisibilityChanged) setVisibility();
     _shown = _numbers;
+    if (!isVisibilityChanged) return;
+    for (const Hidable& hidable : _hidables)
+    {
+        const bool isShown = isVisible(hidable.nodes);
+        const osg::Node::NodeMask mask = hidable.mesh->getNodeMask();
+        if (isShown == (mask != 0)) continue;
+        if (!isShown) storeMask(*hidable.mesh, mask);
+        hidable.mesh->setNodeMask(isShown ? applicationMask(*hidable.mesh) : 0);
+    }
 }
 
 } // namespace osgGpuAnimation

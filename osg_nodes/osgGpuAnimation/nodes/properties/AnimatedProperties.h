@@ -86,11 +86,9 @@ private:
     /// The numbers that are shown, first those at rest, or the default; within the member's range.
     std::array<float, 4> valueOf(const PropertyMember& member, int index) const;
     bool isVisible(const std::vector<int>& nodes) const;
-    void setMaterials(osg::StateSet& state, int material) const;
     void setMaterial(osg::StateSet& state, const PropertyPointer& pointer) const;
     void setLight(Light& light, bool hasChanged) const;
     void setCamera(osg::CameraView& view, const PropertyPointer& pointer) const;
-    void setVisibility();
 
     std::vector<Property> _properties;
     std::map<std::pair<const PropertyMember*, int>, std::size_t> _firstNumbers; ///< by member and index, in _numbers

@@ -4,7 +4,6 @@
 #include <osgGpuAnimation/authoring/retarget/JointNames.h>
 #include <osgGpuAnimation/nodes/properties/AnimatedProperties.h>
 
-#include <osg/UserDataContainer>
 #include <osg/ValueObject>
 
 #include <glm/geometric.hpp>
@@ -197,30 +196,20 @@ std::string randomIdentifier()
     return text.str();
 }
 
-/// The mesh gets user data of its own: VariantMeshes tells meshes apart by it.
-void setIdentifier(SkinnedGeometry& mesh, const std::string& identifier)
-{
-    osg::ref_ptr<osg::UserDataContainer> data = new osg::DefaultUserDataContainer;
-    if (const osg::UserDataContainer* before = mesh.getUserDataContainer()) data = osg::clone(before);
-    // A garment may wear garments itself: the copy of its container shares their identifiers.
-    if (const unsigned int index = data->getUserObjectIndex(garmentKey); index < data->getNumUserObjects())
-        data->removeUserObject(index);
-    mesh.setUserDataContainer(data);
-    mesh.setUserValue(garmentKey, identifier);
-}
-
-} // namespace
-
-bool Wardrobe::areSame(const ObservedMeshes& known, const Meshes& meshes)
+template <typename ObservedMeshes>
+bool areSame(const ObservedMeshes& known, const Wardrobe::Meshes& meshes)
 {
     return std::equal(known.begin(), known.end(), meshes.begin(), meshes.end(),
                       [](const auto& one, const SkinnedGeometry* other) { return one.get() == other; });
 }
 
-bool Wardrobe::exist(const ObservedMeshes& known)
+template <typename ObservedMeshes>
+bool exist(const ObservedMeshes& known)
 {
     return std::all_of(known.begin(), known.end(), [](const auto& mesh) { return mesh.valid(); });
 }
+
+} // namespace
 
 bool Wardrobe::Fitting::restore(FittedGarment& out) const
 {
@@ -258,7 +247,9 @@ Result<FittedGarment> Wardrobe::fit(const osg::Node& garment, const AnimationSet
     {
         const osg::ref_ptr<SkinnedGeometry> mesh = new SkinnedGeometry(*source, osg::CopyOp::SHALLOW_COPY);
         unanimated.release(*mesh);
-        setIdentifier(*mesh, identifier);
+        // A garment may wear garments itself. VariantMeshes tells meshes apart by their own user data.
+        removeMark(*mesh, garmentKey);
+        mesh->setUserValue(garmentKey, identifier);
         setEntries(*mesh, *source, fitter);
         setMorphs(*mesh, *source, set, fitted);
         fitted.meshes.push_back(mesh);

@@ -76,8 +76,6 @@ private:
         std::shared_ptr<const ClipBoxes> boxes;
     };
 
-    static bool areSame(const ObservedMeshes& known, const Meshes& meshes);
-    static bool exist(const ObservedMeshes& known);
     const Garment* find(const osg::Node& garment, const Meshes& meshes) const;
     std::string identifierFor(const osg::Node& garment, const Meshes& meshes);
 

@@ -104,8 +104,6 @@ public:
     {
     }
 
-    /// An error, or true.
-
     Result<void> run()
     {
         const Result<NodeTree> tree = buildNodeTree(_model, _options);

@@ -2,7 +2,6 @@
 #include "tool/Commands.h"
 
 #include "gltf/Export.h"
-#include "gltf/file/ProgressLine.h"
 #include "gltf/file/SavedFile.h"
 #include "gltf/import/ClipFiles.h"
 
@@ -175,7 +174,6 @@ Result<void> ConvertCommand::run() const
     options.keepEncoded = extension == "glb";
     const Result<Scene> scene = read(file, options);
     if (!scene) return Error{file + ": " + scene.error().message};
-    const gltf::ProgressLine progress("writing " + osgDB::getSimpleFileName(output));
     const Result<std::string> bytes =
         extension == "glb" ? glbOf(*scene.value(), output) : osgFileOf(*scene.value(), extension);
     if (!bytes) return Error{output + ": " + bytes.error().message};

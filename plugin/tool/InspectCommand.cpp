@@ -2,7 +2,6 @@
 #include "tool/Commands.h"
 
 #include "gltf/file/Elements.h"
-#include "gltf/file/ProgressLine.h"
 
 #include <osgGpuAnimation/gpu/buffers/AnimationBuffers.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
@@ -447,11 +446,7 @@ Result<void> InspectCommand::run() const
     options.noRotation = true;
     const Result<gltf::ImportedModel> model = readModel(file, options);
     if (!model) return Error{file + ": " + model.error().message};
-    nlohmann::ordered_json report;
-    {
-        const gltf::ProgressLine progress("inspecting");
-        report = reportModel(model.value(), file);
-    }
+    const nlohmann::ordered_json report = reportModel(model.value(), file);
     // Names in a file may hold any bytes; those that are not UTF-8 are replaced.
     const auto replace = nlohmann::ordered_json::error_handler_t::replace;
     std::cout << (json ? report.dump(2, ' ', false, replace) + "\n" : reportText(report)) << std::flush;

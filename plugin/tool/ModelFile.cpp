@@ -7,7 +7,6 @@
 #endif
 #include "gltf/Export.h"
 #include "gltf/file/ModelBytes.h"
-#include "gltf/file/ProgressLine.h"
 
 #include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
@@ -63,7 +62,6 @@ Result<std::string> readGltf(const std::string& fileName, const gltf::ImportOpti
 Result<gltf::ImportedModel> importFile(const std::string& fileName, const gltf::ImportOptions& options,
                                        gltf::Messages& messages)
 {
-    const gltf::ProgressLine progress("reading " + osgDB::getSimpleFileName(fileName));
     const Result<std::string> bytes = readGltf(fileName, options, messages);
     if (!bytes) return bytes.error();
     gltf::Messages ofFailure;

@@ -2,7 +2,6 @@
 #include "tool/Commands.h"
 
 #include "gltf/file/Elements.h"
-#include "gltf/file/ProgressLine.h"
 #include "gltf/file/SavedFile.h"
 #include "tool/PoseEvaluator.h"
 
@@ -344,14 +343,12 @@ Result<std::string> evaluate(const gltf::ImportedModel& model, const PoseRequest
     if (!evaluator) return evaluator.error();
     PoseDocument document(model, request, clip.value(), command.file, evaluator.value().name);
     if (const Result<void> added = document.addPrimitives(request); !added) return added.error();
-    gltf::ProgressLine progress("computing poses");
-    for (std::size_t frame = 0; frame < request.times.size(); ++frame)
+    for (const double time : request.times)
     {
-        progress.set(frame, request.times.size());
-        controller.seek(request.times[frame]);
+        controller.seek(time);
         const Result<EvaluatedPose> pose = evaluator.value().evaluate(controller.instruction());
         if (!pose) return pose.error();
-        document.add(request.times[frame], pose.value());
+        document.add(time, pose.value());
     }
     return document.text();
 }

@@ -3,7 +3,6 @@
 
 #include "crowd/CrowdGrid.h"
 #include "gltf/export/PictureWriter.h"
-#include "gltf/file/ProgressLine.h"
 #include "gltf/file/SavedFile.h"
 #include "tool/PoseEvaluator.h"
 
@@ -77,12 +76,6 @@ std::vector<osg::Vec3d> pointsOf(const gltf::ImportedModel& model, const std::ve
         addMoving(model, evaluator, points);
     }
     return points;
-}
-
-void waitForLevels(CharacterMeshes& meshes)
-{
-    const gltf::ProgressLine progress("computing levels of detail");
-    meshes.waitForLevels();
 }
 
 std::string numbered(const std::string& output, std::size_t number)
@@ -160,11 +153,9 @@ Result<void> show(const RenderCommand& command, PictureViewer& viewer, osg::Node
 Result<void> drawPictures(const RenderCommand& command, PictureViewer& viewer,
                           const std::function<double(double)>& simulationTime)
 {
-    gltf::ProgressLine progress("drawing");
     const std::vector<double> times = timesOf(command);
     for (std::size_t picture = 0; picture < times.size(); ++picture)
     {
-        progress.set(picture, times.size());
         if (command.turntable) viewer.turn(360.0 * static_cast<double>(picture) / *command.turntable);
         const osg::ref_ptr<osg::Image> image = viewer.draw(simulationTime(times[picture]));
         const std::string name =
@@ -179,7 +170,7 @@ Result<void> drawModel(const RenderCommand& command, PictureViewer& viewer, cons
     const std::vector<double> posed = command.turntable ? std::vector<double>{command.time} : timesOf(command);
     if (const Result<void> shown = show(command, viewer, *model.root, pointsOf(model, posed), command.view); !shown)
         return shown;
-    if (model.character) waitForLevels(model.character->getMeshes());
+    if (model.character) model.character->getMeshes().waitForLevels();
     if (model.startCamera) viewer.lookThrough(*model.startCamera);
     return drawPictures(command, viewer,
                         [&](double seconds)
@@ -199,7 +190,7 @@ Result<void> drawCrowd(const RenderCommand& command, PictureViewer& viewer, osg:
     const std::vector<osg::Vec3d> points = osgGpuAnimation::pointsOf(*scene);
     const ViewDirection from = command.view.value_or(fillingDirection(points));
     if (const Result<void> shown = show(command, viewer, *scene, points, from); !shown) return shown;
-    waitForLevels(crowd.value()->getMeshes());
+    crowd.value()->getMeshes().waitForLevels();
     viewer.draw(0.0); // the time from which the clips run
     return drawPictures(command, viewer, [](double seconds) { return seconds; });
 }

@@ -16,6 +16,7 @@
 #include <osg/LightSource>
 #include <osg/Material>
 
+#include <algorithm>
 #include <set>
 
 namespace osgGpuAnimation::gltf
@@ -27,6 +28,14 @@ namespace
 using Change = void (*)(MaterialUse&);
 
 void nothing(MaterialUse&) {}
+
+/// Null if the material has no such map.
+const MaterialMap* mapAt(const MaterialMaps& maps, PbrMaterial::Map PbrMaterial::*place)
+{
+    const auto found = std::find_if(maps.maps.begin(), maps.maps.end(),
+                                    [place](const MaterialMap& map) { return map.place == place; });
+    return found == maps.maps.end() ? nullptr : &*found;
+}
 
 /// The state of a file's materials. Material 0 is for tests to change, and texture 0 has a picture.
 class MaterialsTest : public ::testing::Test
@@ -332,9 +341,9 @@ TEST(MaterialExtensionsTest, factorsAndMapsOfTheExtensions)
     EXPECT_FLOAT_EQ(result.sheenRoughness, 0.4f);
     EXPECT_FLOAT_EQ(result.transmission, 0.8f);
     const MaterialMaps maps = mapsOf(material, true);
-    ASSERT_TRUE(maps.find(&PbrMaterial::clearcoatMap));
-    EXPECT_EQ(maps.find(&PbrMaterial::clearcoatMap)->texture, 3);
-    EXPECT_FALSE(maps.find(&PbrMaterial::sheenColorMap));
+    ASSERT_TRUE(mapAt(maps, &PbrMaterial::clearcoatMap));
+    EXPECT_EQ(mapAt(maps, &PbrMaterial::clearcoatMap)->texture, 3);
+    EXPECT_FALSE(mapAt(maps, &PbrMaterial::sheenColorMap));
 }
 
 TEST(MaterialExtensionsTest, defaultsAreTheSpecifications)
@@ -379,10 +388,10 @@ TEST(MaterialExtensionsTest, specularGlossinessReplacesMetalAndRoughness)
     EXPECT_EQ(result.specularColor, osg::Vec3(0.4f, 0.5f, 0.6f));
     EXPECT_TRUE(result.isSpecularGlossiness);
     const MaterialMaps maps = mapsOf(material, true);
-    EXPECT_EQ(maps.find(&PbrMaterial::baseColorMap)->texture, 2);
-    EXPECT_EQ(maps.find(&PbrMaterial::specularColorMap)->texture, 3);
-    EXPECT_FALSE(maps.find(&PbrMaterial::metallicRoughnessMap));
-    EXPECT_EQ(mapsOf(material, false).find(&PbrMaterial::baseColorMap)->texture, 2) << "lighting=fixed";
+    EXPECT_EQ(mapAt(maps, &PbrMaterial::baseColorMap)->texture, 2);
+    EXPECT_EQ(mapAt(maps, &PbrMaterial::specularColorMap)->texture, 3);
+    EXPECT_FALSE(mapAt(maps, &PbrMaterial::metallicRoughnessMap));
+    EXPECT_EQ(mapAt(mapsOf(material, false), &PbrMaterial::baseColorMap)->texture, 2) << "lighting=fixed";
 }
 
 // The maps of the clear coat come before those of sheen and transmission.
@@ -413,9 +422,9 @@ TEST(MaterialExtensionsTest, mapsOfExtensionsHaveThreeTextureUnitsIfTheyHaveAnEf
             R"({"transmissionTexture":{"index":4},"transmissionFactor":)" + std::string(one.transmission) + '}');
         if (one.isUnlit) material.extensions["KHR_materials_unlit"] = valueOf("{}");
         const MaterialMaps maps = mapsOf(material, true);
-        EXPECT_EQ(maps.find(&PbrMaterial::clearcoatNormalMap)->use, one.coat);
-        EXPECT_EQ(maps.find(&PbrMaterial::sheenColorMap)->use, one.sheen);
-        EXPECT_EQ(maps.find(&PbrMaterial::transmissionMap)->use, one.transmitted);
+        EXPECT_EQ(mapAt(maps, &PbrMaterial::clearcoatNormalMap)->use, one.coat);
+        EXPECT_EQ(mapAt(maps, &PbrMaterial::sheenColorMap)->use, one.sheen);
+        EXPECT_EQ(mapAt(maps, &PbrMaterial::transmissionMap)->use, one.transmitted);
         EXPECT_EQ(maps.hasNormalMap(), one.coat == MapUse::Shown);
     }
 }

@@ -163,7 +163,6 @@ private:
     }
 
     /// Those that show the mesh with its own weights.
-
     const std::vector<int>& nodesOf(int mesh)
     {
         if (_nodesOfMesh.empty())

@@ -193,14 +193,22 @@ std::optional<Error> decompressMeshopt(const JsonValue& bufferViews, MemoryBudge
 std::optional<Error> decompressDraco(const JsonValue& meshes, MemoryBudget& budget, Model& model)
 {
     const bool required = contains(model.extensionsRequired, "KHR_draco_mesh_compression");
-    const auto decompressPrimitive = [&](const JsonValue& json, const PrimitiveName& name) -> std::optional<Error>
+    std::size_t m = 0;
+    for (const JsonValue& mesh : meshes)
     {
-        const JsonValue extension = json["extensions"]["KHR_draco_mesh_compression"];
-        tinygltf::Primitive& primitive = model.meshes[name.mesh].primitives[name.primitive];
-        if (!extension || (!required && hasPlainData(model, primitive))) return std::nullopt;
-        return decompress(model, primitive, extension, name.text() + ".extensions.KHR_draco_mesh_compression", budget);
-    };
-    return forEachPrimitive(meshes, decompressPrimitive);
+        std::size_t p = 0;
+        for (const JsonValue& json : mesh["primitives"])
+        {
+            const PrimitiveName name{m, p++};
+            const JsonValue extension = json["extensions"]["KHR_draco_mesh_compression"];
+            tinygltf::Primitive& primitive = model.meshes[name.mesh].primitives[name.primitive];
+            if (!extension || (!required && hasPlainData(model, primitive))) continue;
+            const std::string place = name.text() + ".extensions.KHR_draco_mesh_compression";
+            if (std::optional<Error> error = decompress(model, primitive, extension, place, budget)) return error;
+        }
+        ++m;
+    }
+    return std::nullopt;
 }
 
 } // namespace osgGpuAnimation::gltf

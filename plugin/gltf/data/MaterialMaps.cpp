@@ -94,13 +94,6 @@ int numberOf(const TextureCoordinates& coordinates, std::vector<TextureCoordinat
 
 } // namespace
 
-const MaterialMap* MaterialMaps::find(PbrMaterial::Map PbrMaterial::*place) const
-{
-    const auto found =
-        std::find_if(maps.begin(), maps.end(), [place](const MaterialMap& map) { return map.place == place; });
-    return found == maps.end() ? nullptr : &*found;
-}
-
 bool MaterialMaps::hasNormalMap() const
 {
     return std::any_of(maps.begin(), maps.end(),

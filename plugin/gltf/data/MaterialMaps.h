@@ -45,8 +45,6 @@ struct MaterialMaps
     std::vector<MaterialMap> maps;               ///< the base colour first
     std::vector<TextureCoordinates> coordinates; ///< at most maxCoordinates; number 0 is that of the base colour
 
-    /// The map at that place, or null.
-    const MaterialMap* find(PbrMaterial::Map PbrMaterial::*place) const;
     /// True if one that is shown reads tangents.
     bool hasNormalMap() const;
 };

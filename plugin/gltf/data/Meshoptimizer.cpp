@@ -13,17 +13,6 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
-bool decode(const MeshoptElements& view, const unsigned char* data, std::size_t bytes, unsigned char* out)
-{
-    if (view.mode == "TRIANGLES") return meshopt_decodeIndexBuffer(out, view.count, view.stride, data, bytes) == 0;
-    if (view.mode == "INDICES") return meshopt_decodeIndexSequence(out, view.count, view.stride, data, bytes) == 0;
-    if (meshopt_decodeVertexBuffer(out, view.count, view.stride, data, bytes) != 0) return false;
-    if (view.filter == "OCTAHEDRAL") meshopt_decodeFilterOct(out, view.count, view.stride);
-    if (view.filter == "QUATERNION") meshopt_decodeFilterQuat(out, view.count, view.stride);
-    if (view.filter == "EXPONENTIAL") meshopt_decodeFilterExp(out, view.count, view.stride);
-    return true;
-}
-
 /// meshoptimizer searches all triangles of a vertex each time that it emits one of them, which takes hours for a file
 /// whose triangles all share one vertex.
 bool isQuick(const std::vector<std::uint32_t>& indices, std::size_t vertexCount)
@@ -41,8 +30,14 @@ bool isQuick(const std::vector<std::uint32_t>& indices, std::size_t vertexCount)
 Result<void> decodeMeshopt(const MeshoptElements& elements, const unsigned char* data, std::size_t bytes,
                            std::vector<unsigned char>& out)
 {
-    if (!decode(elements, data, bytes, out.data()))
-        return Error{"expected data that meshoptimizer can decode, found other data"};
+    const auto& [stride, count, mode, filter] = elements;
+    const int fault = mode == "TRIANGLES" ? meshopt_decodeIndexBuffer(out.data(), count, stride, data, bytes)
+                      : mode == "INDICES" ? meshopt_decodeIndexSequence(out.data(), count, stride, data, bytes)
+                                          : meshopt_decodeVertexBuffer(out.data(), count, stride, data, bytes);
+    if (fault != 0) return Error{"expected data that meshoptimizer can decode, found other data"};
+    if (filter == "OCTAHEDRAL") meshopt_decodeFilterOct(out.data(), count, stride);
+    if (filter == "QUATERNION") meshopt_decodeFilterQuat(out.data(), count, stride);
+    if (filter == "EXPONENTIAL") meshopt_decodeFilterExp(out.data(), count, stride);
     return {};
 }
 

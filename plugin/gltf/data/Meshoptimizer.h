@@ -19,7 +19,7 @@ struct MeshoptElements
     std::size_t stride = 0;
     std::size_t count = 0;
     std::string_view mode;
-    std::string_view filter; ///< empty: none
+    std::string_view filter; ///< of ATTRIBUTES alone; empty: none
 };
 
 /// Decodes `bytes` bytes into out, which has count times stride.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/data/Picture.h"
 
-#include "gltf/data/PictureCodecs.h"
 #include "gltf/file/Report.h"
 
 #include <osg/ValueObject>

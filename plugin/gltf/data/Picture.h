@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "gltf/data/PictureHeader.h"
+#include "gltf/data/PictureCodecs.h"
 
 #include <osgGpuAnimation/math/Result.h>
 

@@ -3,7 +3,6 @@
 
 #include "gltf/file/Report.h"
 
-#include <iterator>
 #include <utility>
 
 namespace osgGpuAnimation::gltf
@@ -84,37 +83,26 @@ unsigned componentOf(const tinygltf::Accessor& accessor)
     return accessor.normalized && component != Float ? 2 * component : component;
 }
 
-void list(std::string& text, const char* word)
-{
-    text += (text.empty() ? "" : " or ");
-    text += word;
-}
+const char* const shapeNames[] = {"VEC2", "VEC3", "VEC4"};
+const char* const componentNames[] = {"float",
+                                      "byte",
+                                      "normalized byte",
+                                      "unsigned byte",
+                                      "normalized unsigned byte",
+                                      "short",
+                                      "normalized short",
+                                      "unsigned short",
+                                      "normalized unsigned short",
+                                      "unsigned int",
+                                      "normalized unsigned int"};
 
-std::string shapesText(unsigned shapes)
+/// The names of the bits that are set: `VEC3 or VEC4`.
+template <unsigned count>
+std::string namesOfBits(unsigned bits, const char* const (&names)[count])
 {
     std::string text;
-    if (shapes & Vec2) list(text, "VEC2");
-    if (shapes & Vec3) list(text, "VEC3");
-    if (shapes & Vec4) list(text, "VEC4");
-    return text;
-}
-
-std::string componentsText(unsigned components)
-{
-    static const char* const names[] = {"float",
-                                        "byte",
-                                        "normalized byte",
-                                        "unsigned byte",
-                                        "normalized unsigned byte",
-                                        "short",
-                                        "normalized short",
-                                        "unsigned short",
-                                        "normalized unsigned short",
-                                        "unsigned int",
-                                        "normalized unsigned int"};
-    std::string text;
-    for (unsigned bit = 0; bit < std::size(names); ++bit)
-        if (components >> bit & 1) list(text, names[bit]);
+    for (unsigned bit = 0; bit < count; ++bit)
+        if (bits >> bit & 1) text += (text.empty() ? "" : " or ") + std::string(names[bit]);
     return text;
 }
 
@@ -142,14 +130,14 @@ std::string wrongAttributeFormat(const tinygltf::Accessor& accessor, Kind kind, 
     if (format.shapes == 0) return {};
     const unsigned components = format.components | (place.isQuantized ? format.quantized : 0);
     if ((shapeOf(accessor) & format.shapes) && (componentOf(accessor) & components)) return {};
-    return shapesText(format.shapes) + " of " + componentsText(components);
+    return namesOfBits(format.shapes, shapeNames) + " of " + namesOfBits(components, componentNames);
 }
 
 std::string formatText(const tinygltf::Accessor& accessor)
 {
-    const std::string shape = shapesText(shapeOf(accessor));
+    const std::string shape = namesOfBits(shapeOf(accessor), shapeNames);
     const char* const other = accessor.type == TINYGLTF_TYPE_SCALAR ? "SCALAR" : "MAT";
-    return (shape.empty() ? other : shape) + " of " + componentsText(componentOf(accessor));
+    return (shape.empty() ? other : shape) + " of " + namesOfBits(componentOf(accessor), componentNames);
 }
 
 } // namespace osgGpuAnimation::gltf

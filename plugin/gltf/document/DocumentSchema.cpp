@@ -466,7 +466,8 @@ private:
         const auto found = std::find_if(_sizes.begin(), _sizes.end(),
                                         [&](const auto& entry) { return entry.first == rule.collection; });
         const std::size_t size = found == _sizes.end() ? 0 : found->second;
-        if (value.isIndexBelow(size)) return Outcome::Good;
+        if (value.isInteger() && value.number() >= 0.0 && value.number() < static_cast<double>(size))
+            return Outcome::Good;
         return wrong(rule, "an index below " + std::to_string(size) + " of " + std::string(rule.collection), value);
     }
 

@@ -75,11 +75,6 @@ void JsonValue::dropMembers() const
         member.dropFrom(*this);
 }
 
-bool JsonValue::isIndexBelow(std::size_t size) const
-{
-    return _tree && isInteger() && number() >= 0.0 && number() < static_cast<double>(size);
-}
-
 std::string JsonValue::description() const
 {
     if (!_tree) return "nothing";

@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -81,8 +80,7 @@ public:
 
     explicit operator bool() const { return _tree != nullptr; }
     bool is(JsonTree::Type type) const { return _tree != nullptr && node().type == type; }
-    bool isInteger() const;                    ///< also 8.0 (glTF 2.0, section 2.7)
-    bool isIndexBelow(std::size_t size) const; ///< an integer from 0, less than size
+    bool isInteger() const; ///< also 8.0 (glTF 2.0, section 2.7)
 
     JsonTree::Type type() const { return node().type; }
     std::size_t size() const { return node().size; } ///< of an array or object, less what was left out
@@ -142,23 +140,5 @@ private:
     JsonTree* _tree = nullptr;
     std::uint32_t _value = 0;
 };
-
-/// Calls visit(primitive, PrimitiveName) for each primitive of the document's meshes, until it returns an error.
-template <typename Visit>
-std::optional<Error> forEachPrimitive(const JsonValue& meshes, const Visit& visit)
-{
-    PrimitiveName name;
-    for (const JsonValue& mesh : meshes)
-    {
-        name.primitive = 0;
-        for (const JsonValue& primitive : mesh["primitives"])
-        {
-            if (std::optional<Error> error = visit(primitive, name)) return error;
-            ++name.primitive;
-        }
-        ++name.mesh;
-    }
-    return std::nullopt;
-}
 
 } // namespace osgGpuAnimation::gltf

@@ -104,13 +104,6 @@ double Drawables::maxDistanceOf(const DrawablePlace& place, const MeshPrimitive&
     return reach.of(radius);
 }
 
-void Drawables::setVisibility(osg::Geometry& geometry, const DrawablePlace& place, const std::vector<int>& nodes) const
-{
-    const bool isHidden = place.visibility >= 0 && elementOf(_tree.hiddenAtRest, place.visibility);
-    if (place.hidden || isHidden) geometry.setNodeMask(0);
-    if (!place.hidden && !nodes.empty()) markVisibility(geometry, nodes);
-}
-
 osg::ref_ptr<osg::Geometry> Drawables::make(const DrawablePlace& place)
 {
     const MeshPrimitive* mesh = meshPrimitive(place);
@@ -150,7 +143,9 @@ osg::ref_ptr<osg::Geometry> Drawables::make(const DrawablePlace& place)
     const int material = materials.materialIn(_variant);
     setColors(*geometry, *mesh, material, palette);
     geometry->addPrimitiveSet(mesh->primitiveSet);
-    setVisibility(*geometry, place, visibility);
+    if (place.hidden || (place.visibility >= 0 && elementOf(_tree.hiddenAtRest, place.visibility)))
+        geometry->setNodeMask(0);
+    if (!place.hidden && !visibility.empty()) markVisibility(*geometry, visibility);
     if (palette) setInfluences(*skinned, *mesh, place);
     if (place.morph >= 0) skinned->setMorphTargets(*_set, static_cast<std::size_t>(place.morph), mesh->targets);
 

@@ -66,8 +66,6 @@ private:
     osg::StateSet* stateSet(const MeshPrimitive& mesh, MaterialUse use, int material);
     void setVariants(SkinnedGeometry& geometry, const MeshPrimitive& mesh, const PrimitiveMaterials& materials,
                      const MaterialUse& use);
-    /// nodes: those that the drawable is visible with.
-    void setVisibility(osg::Geometry& geometry, const DrawablePlace& place, const std::vector<int>& nodes) const;
     void setColors(osg::Geometry& geometry, const MeshPrimitive& mesh, int material, bool palette);
 
     const tinygltf::Model& _model;

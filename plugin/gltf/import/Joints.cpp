@@ -10,6 +10,8 @@
 
 #include <osgGpuAnimation/animation/bounds/TransformBound.h>
 
+#include <glm/gtc/type_ptr.hpp>
+
 #include <algorithm>
 #include <optional>
 
@@ -101,11 +103,7 @@ std::vector<AffineMatrix> readInverseBinds(const tinygltf::Model& model, const t
     if (skin.inverseBindMatrices < 0) return matrices;
     const std::vector<float> numbers = readFloats(model, skin.inverseBindMatrices);
     for (std::size_t place = 0; place < matrices.size(); ++place)
-    {
-        const float* columns = numbers.data() + 16 * place;
-        for (std::size_t row = 0; row < 3; ++row)
-            matrices[place].rows[row] = glm::vec4(columns[row], columns[4 + row], columns[8 + row], columns[12 + row]);
-    }
+        matrices[place] = AffineMatrix::fromColumns(glm::make_mat4(numbers.data() + 16 * place));
     return matrices;
 }
 

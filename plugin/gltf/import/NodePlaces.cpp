@@ -13,7 +13,7 @@
 namespace osgGpuAnimation::gltf
 {
 
-osg::Group& NodePlaces::placeOf(std::size_t node)
+void NodePlaces::add(std::size_t node, osg::Node* child)
 {
     // A loop, because nodes may be nested thousands deep. A node that moves is a joint or below one.
     std::vector<std::size_t> missing;
@@ -23,27 +23,18 @@ osg::Group& NodePlaces::placeOf(std::size_t node)
         if (_joints.ofNode[next] >= 0) break;
     }
     for (; !missing.empty(); missing.pop_back())
-        _places[missing.back()] = makePlace(missing.back());
-    return *_places[node];
-}
-
-/// The parent of a node that is no joint has a place.
-osg::ref_ptr<osg::Group> NodePlaces::makePlace(std::size_t node) const
-{
-    const int joint = _joints.ofNode[node];
-    osg::ref_ptr<osg::Group> place;
-    if (joint >= 0)
     {
-        place = new JointAttachment(joint);
-        _character->addChild(place);
+        const std::size_t next = missing.back();
+        const int joint = _joints.ofNode[next];
+        osg::Group* const parent = joint >= 0 ? _character : elementOf(_places, _tree.parents[next]).get();
+        if (joint >= 0)
+            _places[next] = new JointAttachment(joint);
+        else
+            _places[next] = new osg::MatrixTransform(toOsg(localMatrix(_model.nodes[next])));
+        _places[next]->setName(_model.nodes[next].name);
+        parent->addChild(_places[next]);
     }
-    else
-    {
-        place = new osg::MatrixTransform(toOsg(localMatrix(_model.nodes[node])));
-        elementOf(_places, _tree.parents[node])->addChild(place);
-    }
-    place->setName(_model.nodes[node].name);
-    return place;
+    _places[node]->addChild(child);
 }
 
 } // namespace osgGpuAnimation::gltf

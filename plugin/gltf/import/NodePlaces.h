@@ -33,12 +33,9 @@ public:
     {
     }
     /// Adds a child to the node's place. node: in the drawn part.
-    void add(std::size_t node, osg::Node* child) { placeOf(node).addChild(child); }
+    void add(std::size_t node, osg::Node* child);
 
 private:
-    osg::Group& placeOf(std::size_t node);
-    osg::ref_ptr<osg::Group> makePlace(std::size_t node) const;
-
     const tinygltf::Model& _model;
     const NodeTree& _tree;
     const Joints& _joints;

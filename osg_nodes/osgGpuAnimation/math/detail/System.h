@@ -30,7 +30,4 @@ std::string moduleOf(const void* address);
 
 unsigned long processId();
 
-/// True if standard error is a terminal that moves its cursor.
-bool isErrorTerminal();
-
 } // namespace osgGpuAnimation::system

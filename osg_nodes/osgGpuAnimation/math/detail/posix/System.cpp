@@ -82,9 +82,4 @@ unsigned long system::processId()
     return static_cast<unsigned long>(::getpid());
 }
 
-bool system::isErrorTerminal()
-{
-    return ::isatty(STDERR_FILENO) != 0;
-}
-
 } // namespace osgGpuAnimation

@@ -138,11 +138,4 @@ unsigned long system::processId()
     return GetCurrentProcessId();
 }
 
-bool system::isErrorTerminal()
-{
-    DWORD mode = 0;
-    const HANDLE error = GetStdHandle(STD_ERROR_HANDLE);
-    return GetConsoleMode(error, &mode) && (mode & ENABLE_VIRTUAL_TERMINAL_PROCESSING) != 0;
-}
-
 } // namespace osgGpuAnimation

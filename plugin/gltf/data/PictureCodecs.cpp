@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/data/PictureHeader.h"
+#include "gltf/data/PictureCodecs.h"
 
 #include "gltf/file/Report.h"
 

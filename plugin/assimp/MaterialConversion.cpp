@@ -11,7 +11,6 @@
 #include <osgDB/Registry>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -19,7 +18,6 @@
 #include <map>
 #include <optional>
 #include <sstream>
-#include <string>
 #include <utility>
 
 namespace osgGpuAnimation::assimp

@@ -414,10 +414,8 @@ private:
             }
             if (!number->second) continue;
             const auto& [above, isHidden] = place;
-            const std::size_t node =
-                isHidden ? _nodes.add(name, JointTransform(), above) : _nodes.nodeFor(above, "mesh", name);
+            const std::size_t node = _nodes.nodeFor(above, "mesh", name, isHidden);
             _nodes.at(node)["mesh"] = *number->second;
-            if (isHidden) _nodes.hide(node);
         }
     }
 

@@ -6,7 +6,6 @@
 #include <osgGpuAnimation/authoring/keyframes/SampledTrack.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <utility>
 

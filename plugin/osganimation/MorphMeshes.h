@@ -2,7 +2,6 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/Channel.h>
-#include <osgGpuAnimation/animation/Skeleton.h>
 #include <osgGpuAnimation/mesh/MorphTarget.h>
 
 #include <osgAnimation/Animation>

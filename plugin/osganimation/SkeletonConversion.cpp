@@ -122,7 +122,11 @@ private:
     void addClips(const std::vector<Manager>& managers, AnimationParts& parts);
     bool addWeights(const osgAnimation::Animation& animation, const AnimationParts& parts, ClipBuilder& builder);
     void addChildren(AnimatedCharacter& character);
-    void stay(const std::string& reason) { _warnings.push_back("skeleton \"" + _skeleton.getName() + "\": " + reason); }
+    bool stay(const std::string& reason)
+    {
+        _warnings.push_back("skeleton \"" + _skeleton.getName() + "\": " + reason + "; it stays as it is");
+        return false;
+    }
 
     osgAnimation::Skeleton& _skeleton;
     std::vector<std::string>& _warnings;
@@ -152,21 +156,14 @@ bool SkeletonConverter::findBones()
             place.bone = static_cast<int>(_bones.size());
             _bones.push_back({bone, callbackOf<osgAnimation::UpdateBone>(*bone), parent});
             if (!hasNoShear(BoneMotion(*bone, _bones.back().update, nullptr).at(0.0)))
-            {
-                stay("bone \"" + bone->getName() + "\" is sheared; it stays as it is");
-                return false;
-            }
+                return stay("bone \"" + bone->getName() + "\" is sheared");
         }
         osg::Group* const group = place.node->asGroup();
-        if (group && !guard.enter(*group, place.depth))
-        {
-            stay(guard.fault() + "; it stays as it is");
-            return false;
-        }
+        if (group && !guard.enter(*group, place.depth)) return stay(guard.fault());
         for (unsigned int i = group ? group->getNumChildren() : 0; i-- > 0;)
             open.push_back({group->getChild(i), place.bone, place.depth + 1});
     }
-    return true;
+    return !_bones.empty() || stay("it has no bones");
 }
 
 void SkeletonConverter::addClips(const std::vector<Manager>& managers, AnimationParts& parts)
@@ -263,17 +260,12 @@ void SkeletonConverter::addChildren(AnimatedCharacter& character)
 osg::ref_ptr<AnimatedCharacter> SkeletonConverter::character(const std::vector<Manager>& managers)
 {
     if (!findBones()) return nullptr;
-    if (_bones.empty())
-    {
-        stay("it has no bones; it stays as it is");
-        return nullptr;
-    }
     const AttributeCallbacks held(_skeleton);
     _meshes = findMeshes(_skeleton, _bones, _warnings);
     const Result<std::shared_ptr<const AnimationSet>> set = makeSet(managers);
     if (!set)
     {
-        stay(set.error().message + "; it stays as it is");
+        stay(set.error().message);
         return nullptr;
     }
     osg::ref_ptr<AnimatedCharacter> made = new AnimatedCharacter(set.value());

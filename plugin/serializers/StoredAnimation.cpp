@@ -4,7 +4,6 @@
 #include "serializers/RegistryHooks.h"
 
 #include <osgGpuAnimation/animation/AnimationLayer.h>
-#include <osgGpuAnimation/animation/Clip.h>
 #include <osgGpuAnimation/animation/keyframes/CompactTracks.h>
 #include <osgGpuAnimation/animation/LayerSnapshot.h>
 #include <osgGpuAnimation/animation/RootMotion.h>

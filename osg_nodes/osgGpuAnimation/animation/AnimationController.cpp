@@ -137,7 +137,12 @@ void AnimationController::step(double seconds)
         layer(i).advance(step);
     if (_goals) _goals->advance(set().constraintChains(), step);
     writeInstruction();
-    if (_rootMotionCurve) accumulateRootMotion();
+    if (!_rootMotionCurve) return;
+    RootMotionBlend blend;
+    for (std::size_t i = 0; i < layerCount(); ++i)
+        layer(i).collectMotion(blend, *_rootMotionCurve);
+    const RootMotion moved = blend.result();
+    if (!moved.isNone()) _rootMotion = (_rootMotion.isNone() ? RootMotion{{}, 0.0, moved.up} : _rootMotion) * moved;
 }
 
 const PoseInstruction& AnimationController::advance(double seconds)
@@ -185,15 +190,6 @@ void AnimationController::writeInstruction() const
     samples.write(_instruction);
     if (_goals) _goals->write(_instruction.targets);
     _writtenChanges.store(changeCount(), std::memory_order_release);
-}
-
-void AnimationController::accumulateRootMotion()
-{
-    RootMotionBlend blend;
-    for (std::size_t i = 0; i < layerCount(); ++i)
-        layer(i).collectMotion(blend, *_rootMotionCurve);
-    const RootMotion step = blend.result();
-    if (!step.isNone()) _rootMotion = (_rootMotion.isNone() ? RootMotion{{}, 0.0, step.up} : _rootMotion) * step;
 }
 
 RootMotion AnimationController::takeRootMotion()

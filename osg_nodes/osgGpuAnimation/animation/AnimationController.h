@@ -128,7 +128,6 @@ private:
     void step(double seconds);
     template <typename Function>
     void forEachEvent(Function function) const; ///< function(event), in the order of time, for the last step
-    void accumulateRootMotion();
 
     // Members that every advance() needs come first and together: with thousands of controllers they are not in the
     // cache.

@@ -282,19 +282,17 @@ BlendSample AnimationLayer::sampleOf(const ClipPlayback& playback, double time, 
     return sample;
 }
 
-void AnimationLayer::collectPose(BlendList& out) const
-{
-    const auto weight = static_cast<float>(_poseShare.value() * _weight.value());
-    const BlendSample sample{out.addPose(_pose), 0.0f, weight, maskBits() | POSE_SAMPLE_POSED};
-    if (_settings.mode == Mode::Override)
-        out.add(sample, _settings.blendPriority);
-    else
-        out.addDifference(BlendSample{0, 0.0f, weight, maskBits()}, sample);
-}
-
 void AnimationLayer::collect(BlendList& out) const
 {
-    if (_pose && _poseShare.value() > 0.0 && _weight.value() > 0.0) collectPose(out);
+    if (_pose && _poseShare.value() > 0.0 && _weight.value() > 0.0)
+    {
+        const auto weight = static_cast<float>(_poseShare.value() * _weight.value());
+        const BlendSample sample{out.addPose(_pose), 0.0f, weight, maskBits() | POSE_SAMPLE_POSED};
+        if (_settings.mode == Mode::Override)
+            out.add(sample, _settings.blendPriority);
+        else
+            out.addDifference(BlendSample{0, 0.0f, weight, maskBits()}, sample);
+    }
     if (_state == PlayState::Stopped) return;
     for (std::size_t v = 0; v < _mixer.activeClipCount(); ++v)
     {

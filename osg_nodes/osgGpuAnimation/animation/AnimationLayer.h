@@ -180,7 +180,6 @@ private:
     ClipPlayback playbackOf(std::size_t clip) const;
     void fadePose(double share, double seconds, FadeCurve curve);
     std::optional<double> advancePose(double seconds);
-    void collectPose(BlendList& out) const;
     Result<void> takeOptions(const std::string& target, double seconds, const CrossfadeOptions& options);
     void begin(std::size_t clip, double seconds, const CrossfadeOptions& options);
     std::optional<double> sharedPhase(int clip) const;

@@ -8,9 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
-#include <optional>
 
 namespace osgGpuAnimation
 {
@@ -117,8 +115,6 @@ AnimationSet::AnimationSet(AnimationParts parts, std::shared_ptr<MaskTable> mask
         _keyframeCount += clip.keyframeCount();
     }
 }
-
-AnimationSet::~AnimationSet() = default;
 
 Result<std::shared_ptr<const AnimationSet>> AnimationSet::create(AnimationParts parts)
 {

@@ -36,8 +36,6 @@ public:
     /// constraint as in withConstraints().
     static Result<std::shared_ptr<const AnimationSet>> create(AnimationParts parts);
 
-    ~AnimationSet();
-
     /// The set; if it is null, a set without joints and clips, which characters and crowds have before they get one.
     static std::shared_ptr<const AnimationSet> orEmpty(std::shared_ptr<const AnimationSet> set);
 

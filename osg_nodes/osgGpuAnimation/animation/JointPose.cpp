@@ -96,8 +96,6 @@ JointPose& JointPose::operator=(const JointPose& other)
     return *this;
 }
 
-JointPose::~JointPose() = default;
-
 bool JointPose::isEmpty() const
 {
     return _keyframe->isEmpty();

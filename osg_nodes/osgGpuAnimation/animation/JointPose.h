@@ -35,7 +35,6 @@ public:
     explicit JointPose(std::shared_ptr<const AnimationSet> set);
     JointPose(const JointPose& other);            ///< Copies all values.
     JointPose& operator=(const JointPose& other); ///< Copies all values.
-    ~JointPose();
 
     const AnimationSet& set() const { return *_set; } ///< the set whose joints are posed
 

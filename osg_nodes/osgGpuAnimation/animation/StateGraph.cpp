@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <locale>
-#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -204,7 +203,14 @@ Result<void> StateGraph::addTransition(const TransitionDescription& description)
                      " seconds: expected a finite number, at least 0"};
     if (description.when.empty()) return Error{"it has no conditions"};
     for (const std::string& text : description.when)
-        if (const Result<void> added = addCondition(transition, text); !added) return added;
+    {
+        const Result<StateCondition> condition = StateCondition::parse(text);
+        if (!condition) return condition.error();
+        const auto& [test, name, value] = condition.value();
+        transition.conditions.push_back({test, 0, value});
+        if (!name.empty())
+            transition.conditions.back().parameter = indexAdding(name, test == Test::Fired ? _triggers : _parameters);
+    }
     if (!endsFor(transition)) return Error{"\"finished\" is never true: no source state plays once"};
     _transitions.push_back(std::move(transition));
     return {};
@@ -220,20 +226,6 @@ bool StateGraph::endsFor(const Transition& transition) const
         if (transition.from ? s == *transition.from : s != transition.to)
             hasEnd = hasEnd || _states[s].loopMode == LoopMode::Once;
     return hasEnd;
-}
-
-Result<void> StateGraph::addCondition(Transition& transition, const std::string& text)
-{
-    const Result<StateCondition> condition = StateCondition::parse(text);
-    if (!condition) return condition.error();
-    const StateCondition& parsed = condition.value();
-    Condition compiled{parsed.test, 0, parsed.value};
-    if (parsed.test == Test::Fired)
-        compiled.parameter = indexAdding(parsed.parameter, _triggers);
-    else if (!parsed.parameter.empty())
-        compiled.parameter = indexAdding(parsed.parameter, _parameters);
-    transition.conditions.push_back(compiled);
-    return {};
 }
 
 Result<std::size_t> StateGraph::stateNamed(const std::string& name) const

@@ -151,7 +151,6 @@ private:
     Result<void> addBlend(const AnimationSet& set, const StateBlendDescription& description, State& state);
     Result<std::size_t> addParameter(const std::string& name);
     Result<void> addTransition(const TransitionDescription& description);
-    Result<void> addCondition(Transition& transition, const std::string& text);
     Result<std::size_t> stateNamed(const std::string& name) const;
     bool endsFor(const Transition& transition) const;
 

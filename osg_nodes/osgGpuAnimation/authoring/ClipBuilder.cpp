@@ -180,15 +180,12 @@ private:
     void splineSlope(std::size_t key, double alpha, double factor, double* out) const
     {
         const double length = _channel.times[key + 1] - _channel.times[key];
-        const double square = alpha * alpha;
         const double* v0 = valueOfKey(key);
         const double* v1 = valueOfKey(key + 1);
         for (std::size_t c = 0; c < _componentCount; ++c)
         {
             const double m0 = length * tangentAfter(v0)[c], m1 = length * tangentBefore(v1)[c];
-            const double slope = 6.0 * (square - alpha) * (v0[c] - v1[c]) + (3.0 * square - 4.0 * alpha + 1.0) * m0 +
-                                 (3.0 * square - 2.0 * alpha) * m1;
-            out[c] = slope * factor;
+            out[c] = hermiteSlope(v0[c], m0, v1[c], m1, alpha) * factor;
         }
     }
 

@@ -89,8 +89,6 @@ private:
 
     Result<void> findParent(const Clip& clip)
     {
-        _parentToModel = glm::dmat4(1.0);
-        _parentRotation = glm::identity<glm::dquat>();
         for (int j = _skeleton.joint(_joint).parent; j >= 0; j = _skeleton.joint(j).parent)
         {
             const auto joint = static_cast<std::size_t>(j);

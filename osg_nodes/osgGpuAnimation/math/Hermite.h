@@ -14,4 +14,11 @@ V hermite(const V& a, const V& out, const V& b, const V& in, double x)
            (cube - square) * in;
 }
 
+/// Its derivative by x.
+inline double hermiteSlope(double a, double out, double b, double in, double x)
+{
+    const double square = x * x;
+    return 6.0 * (square - x) * (a - b) + (3.0 * square - 4.0 * x + 1.0) * out + (3.0 * square - 2.0 * x) * in;
+}
+
 } // namespace osgGpuAnimation

@@ -153,9 +153,7 @@ void CharacterWriter::writeGroup(const Group& group, WrittenCharacter& made)
     const int joint = group.joint >= 0 ? group.joint : morph ? set.skeleton().jointOfSourceNode(morph->sourceNode) : -1;
     NodePlace* const place = joint < 0 ? nullptr : &_nodes.placeOf(elementOf(made.nodeOfJoint, joint));
     const std::string& name = morph ? morph->name : group.nodeName;
-    const std::size_t node =
-        group.isHidden ? _nodes.add(name, JointTransform(), place) : _nodes.nodeFor(place, "mesh", name);
-    if (group.isHidden) _nodes.hide(node);
+    const std::size_t node = _nodes.nodeFor(place, "mesh", name, group.isHidden);
     nlohmann::json mesh{{"primitives", std::move(primitives)}};
     if (!group.name.empty()) mesh["name"] = group.name;
     _nodes.at(node)["mesh"] = append(_writer.document["meshes"], std::move(mesh));

@@ -114,12 +114,6 @@ std::vector<PropertyKey> withoutHeldKeys(std::vector<PropertyKey> keys)
     return made;
 }
 
-/// The derivative of hermite() by x.
-double slope(double a, double out, double b, double in, double x)
-{
-    return 6.0 * (x * x - x) * (a - b) + (3.0 * x * x - 4.0 * x + 1.0) * out + (3.0 * x * x - 2.0 * x) * in;
-}
-
 /// True if one piece from the first to the last key passes through those between, within the rounding of floats.
 bool isOnePiece(const std::vector<PropertyKey>& keys, std::size_t first, std::size_t last)
 {
@@ -136,7 +130,7 @@ bool isOnePiece(const std::vector<PropertyKey>& keys, std::size_t first, std::si
             const double before = static_cast<double>(key.time) - keys[i - 1].time,
                          after = static_cast<double>(keys[i + 1].time) - key.time;
             const double x = (static_cast<double>(key.time) - from.time) / length;
-            const double rate = slope(a, out, b, in, x) / length;
+            const double rate = hermiteSlope(a, out, b, in, x) / length;
             if (!(before > 0.0) || !(after > 0.0) ||
                 std::abs(hermite(a, out, b, in, x) - key.value[number]) > allowed ||
                 std::abs(rate - key.in[number]) * before > allowed ||

@@ -117,15 +117,11 @@ void MaterialWriter::addMap(json& to, const char* member, const PbrMaterial::Map
     if (!map.texture || !(_coordinates & 1u << map.coordinates)) return;
     const std::optional<std::size_t> texture = _pictures.textureOf(*map.texture);
     if (!texture) return;
-    to[member]["index"] = *texture;
-    if (map.coordinates > 0) to[member]["texCoord"] = map.coordinates;
-    addTransform(to[member], map.coordinates);
-}
-
-/// The inverse of setTextureTransform().
-void MaterialWriter::addTransform(json& to, int coordinates)
-{
-    const auto row = static_cast<unsigned int>(2 * coordinates);
+    json& made = to[member];
+    made["index"] = *texture;
+    if (map.coordinates > 0) made["texCoord"] = map.coordinates;
+    // The inverse of setTextureTransform().
+    const auto row = static_cast<unsigned int>(2 * map.coordinates);
     osg::Vec3 first, second;
     if (!_transforms || !_transforms->getElement(row, first) || !_transforms->getElement(row + 1, second)) return;
     const double u[] = {first.x(), -first.y(), first.z() + first.y()};
@@ -134,7 +130,7 @@ void MaterialWriter::addTransform(json& to, int coordinates)
     const double rotation = width > 0.0 ? std::atan2(-v[0], u[0]) : std::atan2(u[1], v[1]);
     const double height = u[1] * std::sin(rotation) + v[1] * std::cos(rotation);
     if (u[2] == 0.0 && v[2] == 0.0 && rotation == 0.0 && width == 1.0 && height == 1.0) return;
-    addExtension(to, "KHR_texture_transform",
+    addExtension(made, "KHR_texture_transform",
                  {{"offset", {u[2], v[2]}}, {"rotation", rotation}, {"scale", {width, height}}});
 }
 

@@ -33,7 +33,6 @@ public:
 private:
     nlohmann::json written(const osg::StateSet& state, PbrMaterial material);
     void addMap(nlohmann::json& to, const char* member, const PbrMaterial::Map& map);
-    void addTransform(nlohmann::json& to, int coordinates);
     void addExtensions(nlohmann::json& to, const PbrMaterial& material);
     void addExtension(nlohmann::json& to, const char* name, nlohmann::json extension);
 

@@ -5,8 +5,6 @@
 
 #include <glm/geometric.hpp>
 
-#include <utility>
-
 namespace osgGpuAnimation::gltf
 {
 
@@ -77,18 +75,15 @@ std::size_t NodeWriter::nodeOf(NodePlace& place)
     return *place.node;
 }
 
-void NodeWriter::hide(std::size_t node)
+std::size_t NodeWriter::nodeFor(NodePlace* place, const char* member, const std::string& name, bool isHidden)
 {
-    const char* const extension = "KHR_node_visibility";
-    at(node)["extensions"][extension]["visible"] = false;
-    _writer.useExtension(extension);
-}
-
-std::size_t NodeWriter::nodeFor(NodePlace* place, const char* member, const std::string& name)
-{
-    if (place)
+    if (place && !isHidden)
         if (const std::size_t node = nodeOf(*place); !at(node).contains(member)) return node;
-    return add(name, JointTransform(), place);
+    const std::size_t node = add(name, JointTransform(), place);
+    if (!isHidden) return node;
+    at(node)["extensions"]["KHR_node_visibility"]["visible"] = false;
+    _writer.useExtension("KHR_node_visibility");
+    return node;
 }
 
 } // namespace osgGpuAnimation::gltf

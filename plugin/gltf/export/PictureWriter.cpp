@@ -74,17 +74,6 @@ std::size_t PictureWriter::known(const char* collection, nlohmann::json element)
     return place->second;
 }
 
-std::size_t PictureWriter::samplerOf(const osg::Texture2D& texture)
-{
-    // glTF and OSG both use OpenGL's numbers.
-    return known("samplers", {{"wrapS", wrapModeOf(texture.getWrap(osg::Texture::WRAP_S))},
-                              {"wrapT", wrapModeOf(texture.getWrap(osg::Texture::WRAP_T))},
-                              {"minFilter", static_cast<int>(texture.getFilter(osg::Texture::MIN_FILTER))},
-                              {"magFilter", texture.getFilter(osg::Texture::MAG_FILTER) == osg::Texture::NEAREST
-                                                ? static_cast<int>(osg::Texture::NEAREST)
-                                                : static_cast<int>(osg::Texture::LINEAR)}});
-}
-
 std::optional<std::size_t> PictureWriter::imageOf(const osg::Image& image)
 {
     const auto [place, isNew] = _images.try_emplace(&image);
@@ -114,7 +103,15 @@ std::optional<std::size_t> PictureWriter::textureOf(const osg::Texture2D& textur
     if (!image || !image->data() || isOneWhitePixel(*image)) return std::nullopt;
     const std::optional<std::size_t> source = imageOf(*image);
     if (!source) return std::nullopt;
-    return known("textures", {{"source", *source}, {"sampler", samplerOf(texture)}});
+    // glTF and OSG both use OpenGL's numbers.
+    const std::size_t sampler =
+        known("samplers", {{"wrapS", wrapModeOf(texture.getWrap(osg::Texture::WRAP_S))},
+                           {"wrapT", wrapModeOf(texture.getWrap(osg::Texture::WRAP_T))},
+                           {"minFilter", static_cast<int>(texture.getFilter(osg::Texture::MIN_FILTER))},
+                           {"magFilter", texture.getFilter(osg::Texture::MAG_FILTER) == osg::Texture::NEAREST
+                                             ? static_cast<int>(osg::Texture::NEAREST)
+                                             : static_cast<int>(osg::Texture::LINEAR)}});
+    return known("textures", {{"source", *source}, {"sampler", sampler}});
 }
 
 } // namespace osgGpuAnimation::gltf

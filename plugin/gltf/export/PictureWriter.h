@@ -32,7 +32,6 @@ public:
 
 private:
     std::optional<std::size_t> imageOf(const osg::Image& image);
-    std::size_t samplerOf(const osg::Texture2D& texture);
     std::size_t known(const char* collection, nlohmann::json element);
 
     GlbWriter& _writer;

@@ -75,8 +75,6 @@ MixBounds::MixBounds(const AnimationSet& set, Boxes boxes) : _set(set), _boxes(s
             _maxRestWeight = std::max(_maxRestWeight, std::abs(static_cast<double>(weight)));
 }
 
-MixBounds::~MixBounds() = default;
-
 const Clip* MixBounds::findClip(int clip) const
 {
     const bool isKnown = clip >= 0 && static_cast<std::size_t>(clip) < _set.clips().size();

@@ -41,7 +41,6 @@ public:
 
     /// The set must outlive this object.
     MixBounds(const AnimationSet& set, Boxes boxes);
-    ~MixBounds();
 
     /// The box in model space. Unknown clips count as the rest pose. constraints: those of the set with an effect, bit
     /// c for constraint c; they may turn the joints of their chains in any way.

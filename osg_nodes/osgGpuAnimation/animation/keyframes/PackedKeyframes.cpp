@@ -85,7 +85,14 @@ void PackedKeyframes::addClip(const Clip& clip, std::size_t firstKeyframe)
         const auto next = static_cast<std::uint32_t>(std::min(k + 1, last));
         _texels[firstKeyframe + k] = {first + static_cast<std::uint32_t>(k) * _recordSize, first + next * _recordSize,
                                       table, 0u};
-        writeRecord(clip, k);
+        if (compact)
+        {
+            const auto record = compact->records.begin() + k * compact->recordSize;
+            _texels.insert(_texels.end(), record, record + compact->recordSize);
+        }
+        for (const Column& column : _columns)
+            for (std::size_t i = 0; i < clip.transformsPerTrack(); ++i)
+                _texels.push_back(texel(clip.at(k, column.track)[i].*column.part));
     }
 }
 
@@ -147,18 +154,6 @@ void PackedKeyframes::widenMotion(const Clip& clip, std::size_t track, bool move
     };
     widen(_tracks[track].translation, movesTranslation, &JointTransform::translation);
     widen(_tracks[track].scale, movesScale, &JointTransform::scale);
-}
-
-void PackedKeyframes::writeRecord(const Clip& clip, std::size_t keyframe)
-{
-    if (const CompactTracks* compact = clip.compactTracks())
-    {
-        const auto first = compact->records.begin() + keyframe * compact->recordSize;
-        _texels.insert(_texels.end(), first, first + compact->recordSize);
-    }
-    for (const Column& column : _columns)
-        for (std::size_t i = 0; i < clip.transformsPerTrack(); ++i)
-            _texels.push_back(texel(clip.at(keyframe, column.track)[i].*column.part));
 }
 
 std::uint32_t PackedKeyframes::addressOfConstant(const glm::vec4& value)

@@ -67,7 +67,6 @@ private:
     void placeTrack(const Clip& clip, std::size_t track);
     void placeCompactTrack(const Clip& clip, std::size_t track, const CompactTracks::Track& compact);
     void widenMotion(const Clip& clip, std::size_t track, bool movesTranslation, bool movesScale);
-    void writeRecord(const Clip& clip, std::size_t keyframe);
     std::uint32_t addressOfConstant(const glm::vec4& value);
     std::uint32_t addressOfVectors(const Clip& clip, std::size_t track, const CompactTracks::Track& compact);
 

@@ -76,20 +76,16 @@ void BlendList::removeLightest()
     std::move(_places.begin() + lightest + 1, _places.begin() + _count, _places.begin() + lightest);
     --_count;
     _sampleCount -= removed.isDifference ? 2 : 1;
-    if (!removed.isDifference) fillBlendPriority(removed.blendPriority, removed.sample.weight);
-}
-
-/// Restores the sum of a blend priority up to 1; PoseInstruction scales larger sums to 1.
-void BlendList::fillBlendPriority(int blendPriority, float removed)
-{
+    if (removed.isDifference) return;
+    // Restores the sum of the blend priority up to 1; PoseInstruction scales larger sums to 1.
     float left = 0.0f;
     for (std::size_t i = 0; i < _count; ++i)
-        if (!_places[i].item.isDifference && _places[i].item.blendPriority == blendPriority)
+        if (!_places[i].item.isDifference && _places[i].item.blendPriority == removed.blendPriority)
             left += _places[i].item.sample.weight;
-    const float whole = std::min(left + removed, 1.0f);
+    const float whole = std::min(left + removed.sample.weight, 1.0f);
     if (!(left > 0.0f) || left >= whole) return;
     for (std::size_t i = 0; i < _count; ++i)
-        if (!_places[i].item.isDifference && _places[i].item.blendPriority == blendPriority)
+        if (!_places[i].item.isDifference && _places[i].item.blendPriority == removed.blendPriority)
             _places[i].item.sample.weight *= whole / left;
 }
 

@@ -55,7 +55,6 @@ private:
     void insert(const Item& item);
     bool isAbove(std::size_t index) const;
     void removeLightest();
-    void fillBlendPriority(int blendPriority, float removed);
 
     std::array<Place, maxItems> _places;
     std::size_t _count = 0;

@@ -3,9 +3,6 @@
 
 #include <osgGpuAnimation/math/Box.h>
 
-#include <glm/geometric.hpp>
-
-#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numeric>

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/authoring/mesh/MeshSimplifier.h>
 
-#include <osgGpuAnimation/authoring/mesh/MeshConnectivity.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -79,12 +77,7 @@ double squaredDistance(const glm::dvec3& from, const std::vector<glm::vec3>& pos
 MeshSimplifier::MeshSimplifier(const PosedSurface& surface, const std::vector<std::uint32_t>& indices)
     : _surface(surface), _mesh(surface, indices), _quadrics(_mesh.pointCount() * _mesh.keyPoseCount())
 {
-    addPlanes();
-}
-
-/// Adds the planes of all triangles and, at open borders, the planes across them.
-void MeshSimplifier::addPlanes()
-{
+    // The planes of all triangles and, at open borders, the planes across them.
     const std::size_t poseCount = _mesh.keyPoseCount();
     const std::vector<Edge> edges = edgesOf(_mesh);
     for (std::uint32_t triangle = 0; triangle < _mesh.triangleCount() && !_surface.isStopped(); ++triangle)

@@ -106,7 +106,6 @@ private:
     };
     using Corners = MeshConnectivity::Corners;
 
-    void addPlanes();
     bool isAlike(std::uint32_t vertex, std::uint32_t other) const;
     void consider(std::uint32_t from, std::uint32_t to);
     void considerNear();

@@ -2,7 +2,6 @@
 #include <osgGpuAnimation/authoring/mesh/SurfaceViews.h>
 
 #include <glm/geometric.hpp>
-#include <glm/vec2.hpp>
 
 #include <algorithm>
 #include <array>

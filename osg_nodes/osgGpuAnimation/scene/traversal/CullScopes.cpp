@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cstring>
 #include <deque>
-#include <string>
 #include <utility>
 
 namespace osgGpuAnimation

@@ -6,7 +6,6 @@
 #include <osg/NodeVisitor>
 #include <osg/observer_ptr>
 #include <osg/State>
-#include <osg/StateSet>
 #include <osgUtil/CullVisitor>
 
 #include <functional>
@@ -24,7 +23,6 @@ public:
     explicit BoxNearFar(osgUtil::CullVisitor& visitor);
     ~BoxNearFar();
     BoxNearFar(const BoxNearFar&) = delete;
-    BoxNearFar& operator=(const BoxNearFar&) = delete;
 
 private:
     osgUtil::CullVisitor& _visitor;
@@ -62,7 +60,6 @@ public:
     }
     ~UnculledScope() { _visitor.getCurrentCullingSet().setCullingMask(_mask); }
     UnculledScope(const UnculledScope&) = delete;
-    UnculledScope& operator=(const UnculledScope&) = delete;
 
 private:
     osgUtil::CullVisitor& _visitor;

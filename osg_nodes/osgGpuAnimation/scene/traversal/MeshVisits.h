@@ -32,7 +32,6 @@ public:
     MeshDrawScope(const PosedMeshSource& source, Draw draw);
     ~MeshDrawScope();
     MeshDrawScope(const MeshDrawScope&) = delete;
-    MeshDrawScope& operator=(const MeshDrawScope&) = delete;
 
     static const MeshDrawScope* current(); ///< the innermost scope of this thread, or null
     const PosedMeshSource& source() const { return _source; }

@@ -26,9 +26,9 @@ struct AffineMatrix
     glm::vec3 transformPoint(const glm::vec3& point) const;
     /// M · (vector, 0): without the translation.
     glm::vec3 transformVector(const glm::vec3& vector) const;
-    bool operator==(const AffineMatrix& other) const { return rows == other.rows; }
-    bool isIdentity() const { return *this == AffineMatrix(); } ///< exactly
-    bool isFinite() const;                                      ///< true if all twelve numbers are finite
+    bool operator==(const AffineMatrix& other) const { return rows == other.rows; } ///< exactly
+    bool isIdentity() const { return *this == AffineMatrix(); }                     ///< exactly
+    bool isFinite() const; ///< true if all twelve numbers are finite
 };
 
 static_assert(sizeof(AffineMatrix) == 48, "a palette entry is 48 bytes on the GPU");

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: MIT
 # Usage: tests/ports/least.sh
 # The kit with OSG, GLM, tinygltf and nlohmann json alone: every OSGGPUANIMATION_WITH_… is off, and OSG's plugins read the
-# pictures. Builds the plugins and their tests in build-least/ and runs them, and the stock osgviewer over Wanderer.glb.
+# pictures. Builds it in build-least/ and runs all its tests, the stock osgviewer over Wanderer.glb among them.
 # Then a project that has the kit as a part and links it statically (tests/install/embedded), in build-embedded/. GL needs a
-# display without EGL: Xvfb's. The first time takes ten minutes on two processors. Exit status 0: all passed.
+# display without EGL: Xvfb's. The first time takes half an hour on two processors. Exit status 0: all passed.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../setup.sh"
 

@@ -54,8 +54,8 @@ struct LightSource
     float quadraticAttenuation;
 };
 // osg::LightModel's ambient colour; the specular colour and the shininess; the colour of the fog; its density, start, end,
-// 1 / (end - start); then of each light: ambient, diffuse, specular, position, spot direction and exponent, cutoff and
-// attenuations.
+// 1 / (end - start); then of each light: ambient, diffuse, specular and the cosine of the cutoff, position, spot direction
+// and exponent, cutoff and attenuations.
 uniform vec4 coreState[4 + 6 * 8];
 
 LightSource coreLight(int index)
@@ -63,7 +63,7 @@ LightSource coreLight(int index)
     int first = 4 + 6 * index;
     vec4 spot = coreState[first + 4], last = coreState[first + 5];
     return LightSource(coreState[first], coreState[first + 1], coreState[first + 2], coreState[first + 3], spot.xyz, spot.w,
-                       last.x, cos(radians(last.x)), last.y, last.z, last.w);
+                       last.x, coreState[first + 2].a, last.y, last.z, last.w);
 }
 #undef DRAW_SHADOW_MAPS
 #define DRAW_SHADOW_MAPS 0 // osgShadow's have generated texture coordinates

@@ -22,9 +22,11 @@ template <typename Element>
 void PlacedInstanceBuffers::upload(const typename SharedBlocks<Element>::Snapshot& content, Uploaded<Element>& uploaded)
 {
     if (uploaded.content == content) return;
+    typename SharedBlocks<Element>::Blocks blocks;
+    if (uploaded.content) blocks = *uploaded.content;
     std::vector<Element> memory;
     _bytesUploaded += uploadChangedUnits(
-        *uploaded.buffer, sizeof(typename SharedBlocks<Element>::Block), content->size(), uploaded.blocks,
+        *uploaded.buffer, sizeof(typename SharedBlocks<Element>::Block), content->size(), blocks,
         memory, [&](std::size_t block) -> const auto& { return (*content)[block]; },
         [&](std::size_t block) -> const auto& { return *(*content)[block]; });
     uploaded.content = content;

@@ -76,7 +76,6 @@ private:
     {
         std::unique_ptr<BufferTexture> buffer;
         typename SharedBlocks<Element>::Snapshot content{};
-        typename SharedBlocks<Element>::Blocks blocks{}; ///< in the buffer, maybe beyond those of the content, too
     };
     struct Crowd
     {

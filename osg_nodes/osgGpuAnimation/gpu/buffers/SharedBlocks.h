@@ -57,7 +57,8 @@ public:
     /// Removes an element by moving the last one to its place.
     void remove(std::size_t index)
     {
-        set(index, (*this)[_size - 1]);
+        if (index + 1 != _size) set(index, (*this)[_size - 1]);
+        _latest.reset();
         --_size;
         if (_size % blockSize != 0) return;
         _blocks.pop_back();

@@ -9,8 +9,9 @@
 #include <osg/Material>
 #include <osg/observer_ptr>
 
+#include <array>
+#include <cmath>
 #include <optional>
-#include <vector>
 
 namespace osgGpuAnimation
 {
@@ -32,17 +33,20 @@ void addLights(osgUtil::PositionalStateContainer& container, const osg::Matrixd&
     }
 }
 
-constexpr std::size_t vectorsOfLight = 6;
+// Vectors of coreState in light.glsl.
+constexpr std::size_t ofScene = 4, ofLight = 6;
 
-/// The numbers of a light in light.glsl.
-void addNumbers(const osg::Light& light, const osg::Matrixd& toEye, std::vector<osg::Vec4>& numbers)
+void setLight(osg::Vec4* numbers, const osg::Light& light, const osg::Matrixd& toEye)
 {
     const osg::Vec3 direction(osg::Matrixd::transform3x3(osg::Vec3d(light.getDirection()), toEye));
-    numbers.insert(numbers.end(),
-                   {light.getAmbient(), light.getDiffuse(), light.getSpecular(),
-                    osg::Vec4(osg::Vec4d(light.getPosition()) * toEye), osg::Vec4(direction, light.getSpotExponent()),
-                    osg::Vec4(light.getSpotCutoff(), light.getConstantAttenuation(), light.getLinearAttenuation(),
-                              light.getQuadraticAttenuation())});
+    numbers[0] = light.getAmbient();
+    numbers[1] = light.getDiffuse();
+    numbers[2] = light.getSpecular();
+    numbers[2].w() = static_cast<float>(std::cos(osg::DegreesToRadians(light.getSpotCutoff())));
+    numbers[3] = osg::Vec4(osg::Vec4d(light.getPosition()) * toEye);
+    numbers[4] = osg::Vec4(direction, light.getSpotExponent());
+    numbers[5] = osg::Vec4(light.getSpotCutoff(), light.getConstantAttenuation(), light.getLinearAttenuation(),
+                           light.getQuadraticAttenuation());
 }
 
 /// Of a render stage, kept in its list of lights.
@@ -125,19 +129,19 @@ void setFixedPipelineUniforms(osg::State& state, unsigned int lights)
     const auto* material = applied<osg::Material>(state, osg::StateAttribute::MATERIAL);
     osg::Vec4 shine = material ? material->getSpecular(osg::Material::FRONT) : osg::Vec4();
     shine.w() = material ? material->getShininess(osg::Material::FRONT) : 0.0f;
-    std::vector<osg::Vec4> numbers{model ? model->getAmbientIntensity() : osg::Vec4(0.2f, 0.2f, 0.2f, 1.0f), shine};
+    std::array<osg::Vec4, ofScene + ofLight * ViewLights::lightCount> numbers{
+        model ? model->getAmbientIntensity() : osg::Vec4(0.2f, 0.2f, 0.2f, 1.0f), shine};
     if (const auto* fog = applied<osg::Fog>(state, osg::StateAttribute::FOG))
-        numbers.insert(numbers.end(), {fog->getColor(), osg::Vec4(fog->getDensity(), fog->getStart(), fog->getEnd(),
-                                                                  1.0f / (fog->getEnd() - fog->getStart()))});
-    numbers.resize(4);
-    const LightList placed = lights != 0 ? ViewLights::of(state) : LightList();
-    for (std::size_t i = 0; lights >> i != 0; ++i)
     {
-        const osg::Light* light = placed[i].light;
-        if (light && (lights & (1u << i)) != 0) addNumbers(*light, placed[i].toEye, numbers);
-        numbers.resize(4 + (i + 1) * vectorsOfLight);
+        numbers[2] = fog->getColor();
+        numbers[3] =
+            osg::Vec4(fog->getDensity(), fog->getStart(), fog->getEnd(), 1.0f / (fog->getEnd() - fog->getStart()));
     }
-    state.get<osg::GLExtensions>()->glUniform4fv(location, static_cast<GLsizei>(numbers.size()), numbers[0].ptr());
+    std::size_t count = ofScene;
+    const LightList placed = lights != 0 ? ViewLights::of(state) : LightList();
+    for (std::size_t i = 0; lights >> i != 0; ++i, count += ofLight)
+        if (placed[i].light && (lights & (1u << i)) != 0) setLight(&numbers[count], *placed[i].light, placed[i].toEye);
+    state.get<osg::GLExtensions>()->glUniform4fv(location, static_cast<GLsizei>(count), numbers[0].ptr());
 }
 
 } // namespace osgGpuAnimation

@@ -86,13 +86,13 @@ osg::ref_ptr<osg::TextureBuffer> sharedTexture(const std::vector<MorphTarget>& t
                                                       target.textureCoordinates.get(), target.tangents.get()})
             source.first.emplace_back(array, array ? array->getModifiedCount() : 0);
     const std::lock_guard<std::mutex> lock(mutex);
-    for (auto texture = textures.begin(); texture != textures.end();)
-        texture = texture->second.valid() ? std::next(texture) : textures.erase(texture);
-    osg::observer_ptr<osg::TextureBuffer>& known = textures[std::move(source)];
     osg::ref_ptr<osg::TextureBuffer> texture;
-    if (known.lock(texture)) return texture;
+    if (const auto known = textures.find(source); known != textures.end() && known->second.lock(texture))
+        return texture;
+    for (auto unused = textures.begin(); unused != textures.end();)
+        unused = unused->second.valid() ? std::next(unused) : textures.erase(unused);
     texture = packTexture(targets, vertexCount, channels);
-    known = texture;
+    textures[std::move(source)] = texture;
     return texture;
 }
 

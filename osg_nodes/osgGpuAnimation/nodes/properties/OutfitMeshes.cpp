@@ -221,21 +221,17 @@ void OutfitMeshes::remove(const osg::Group& crowd, Number number)
     make(crowd);
 }
 
-std::vector<OutfitMeshes::Source> OutfitMeshes::sourcesOf(const osg::Group& crowd)
-{
-    std::vector<Source> sources;
-    const auto add = [&](const SkinnedGeometry& mesh)
-    {
-        auto& own = const_cast<SkinnedGeometry&>(mesh);
-        sources.emplace_back(&own, own.getStateSet(), own.getNodeMask());
-    };
-    forEachMesh(crowd, add);
-    return sources;
-}
-
 bool OutfitMeshes::update(const osg::Group& crowd)
 {
-    if (sourcesOf(crowd) == _sources) return false;
+    std::size_t count = 0;
+    bool isSame = true;
+    forEachMesh(crowd,
+                [&](const SkinnedGeometry& mesh)
+                {
+                    isSame = isSame && count < _sources.size() && _sources[count].isOf(mesh);
+                    ++count;
+                });
+    if (isSame && count == _sources.size()) return false;
     make(crowd);
     return true;
 }
@@ -363,7 +359,7 @@ void OutfitMeshes::make(const osg::Group& crowd)
     if (!_states.empty()) _statesBefore = std::move(_states);
     _states.clear();
     _meshes->removeChildren(0, _meshes->getNumChildren());
-    _sources = sourcesOf(crowd);
+    _sources.clear();
     _shown.clear();
     _lists.meshes.clear();
     // The list of all instances has the numbers that they may have: lists are equal if they have the same instances.
@@ -380,8 +376,13 @@ void OutfitMeshes::make(const osg::Group& crowd)
                     for (const SkinnedGeometry* mesh : meshes.value())
                         visibility[number][mesh] = isVisible;
         });
-    for (const auto& [mesh, state, mask] : _sources)
-        showOwn(*mesh, visibility);
+    forEachMesh(crowd,
+                [&](const SkinnedGeometry& constMesh)
+                {
+                    auto& mesh = const_cast<SkinnedGeometry&>(constMesh);
+                    _sources.push_back({&mesh, mesh.getStateSet(), mesh.getNodeMask()});
+                    showOwn(mesh, visibility);
+                });
     showProps();
     _before.clear();
     _statesBefore.clear();

@@ -58,8 +58,17 @@ public:
     NodesOfOutfits nodesOfOutfits() const;
 
 private:
-    /// A mesh of the crowd, its StateSet and its node mask.
-    using Source = std::tuple<osg::ref_ptr<SkinnedGeometry>, osg::ref_ptr<osg::StateSet>, osg::Node::NodeMask>;
+    struct Source
+    {
+        osg::ref_ptr<SkinnedGeometry> mesh;
+        osg::ref_ptr<osg::StateSet> state;
+        osg::Node::NodeMask mask;
+
+        bool isOf(const SkinnedGeometry& now) const
+        {
+            return mesh == &now && state == now.getStateSet() && mask == now.getNodeMask();
+        }
+    };
     struct Shown
     {
         osg::ref_ptr<SkinnedGeometry> mesh; ///< of the crowd or a prop
@@ -81,7 +90,6 @@ private:
 
     Result<void> check(const osg::Group& crowd, const AnimationSet& set, const Outfit* outfit);
     Result<const PropMesh*> propMesh(const Outfit::Prop& prop, const AnimationSet& set);
-    static std::vector<Source> sourcesOf(const osg::Group& crowd);
     void make(const osg::Group& crowd);
     void makeUniforms();
     void showOwn(SkinnedGeometry& mesh, const std::vector<std::map<const SkinnedGeometry*, bool>>& visibility);

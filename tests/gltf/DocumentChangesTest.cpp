@@ -183,7 +183,7 @@ const OptionalPart optionalParts[] = {
     {lights + "/0/intensity", "1e300", "lights[0].intensity"},
     {lights + "/0/intensity", "0", ""},
     {lights + "/0/name", "7", "lights[0].name: expected a text, found 7; left out"},
-    {lights + "/1/range", "0", "lights[1].range: expected a number from 1e-300 to"},
+    {lights + "/1/range", "0", "lights[1].range: expected a number above 0 and up to 3.4"},
     {lights + "/1/spot", "7", "lights[1].spot: expected an object, found 7; left out"}, // of no spot
     {lights + "/2/spot", "", "lights[2].spot: expected an object, found nothing"},
     {lights + "/2/spot/outerConeAngle", "2", "lights[2].spot.outerConeAngle"},
@@ -201,7 +201,7 @@ const OptionalPart optionalParts[] = {
     {"/cameras/0/type", "\"orthographic\"",
      "cameras[0].orthographic: expected the size of the view, found nothing; the element"},
     {"/cameras/0/perspective/yfov", "0",
-     "cameras[0].perspective.yfov: expected a number from 1e-300 to 3.14159265358979, found 0"},
+     "cameras[0].perspective.yfov: expected a number above 0 and up to 3.14159265358979, found 0"},
     {"/cameras/0/perspective/yfov", "4", "cameras[0].perspective.yfov"},
     {"/cameras/0/perspective/yfov", "1e300", "cameras[0].perspective.yfov"},
     {"/cameras/0/perspective/yfov", "null", "cameras[0].perspective.yfov"},
@@ -233,6 +233,11 @@ const std::pair<OptionalPart, std::size_t> faultyLists[] = {
     {{"/extensions/KHR_materials_variants", "7", "KHR_materials_variants: expected an object, found 7"}, 5},
     {{variants, "{}", "variants: expected an array of at least 1 objects, found an object"}, 5},
     {{primitive, "7", "meshes[0].primitives[0].extensions.KHR_materials_variants: expected an object"}, 7},
+    // One mapping of three; the last one has a variant of the lost one.
+    {{primitive + "/mappings",
+      R"([{"material":0,"variants":[0,1]},{"material":1,"variants":[2,1]},{"material":2,"variants":[2]}])",
+      "mappings[1].variants: expected each variant once, found 1 again"},
+     9},
 };
 
 std::size_t usableParts(const tinygltf::Model& model)

@@ -3,6 +3,7 @@
 
 #include "gltf/document/AttributeSemantic.h"
 #include "gltf/file/Elements.h"
+
 #include <algorithm>
 #include <array>
 #include <bitset>
@@ -36,6 +37,13 @@ void leaveOut(const JsonValue& object, const JsonValue& member, const std::strin
     if (!member) return;
     report.warn(name + '.' + printable(member.key()) + ": " + why + "; left out");
     member.dropFrom(object);
+}
+
+/// The element loses its members and keeps its place.
+void empty(const JsonValue& element, const Error& why, Report& report)
+{
+    report.warn(why.message + "; the element is left out");
+    element.dropMembers();
 }
 
 /// target: of a primitive; -1: its own attributes.
@@ -111,7 +119,8 @@ std::optional<Error> checkDraco(const JsonValue& primitive, const PrimitiveName&
     return std::nullopt;
 }
 
-/// A mapping with a variant that occurs before in the primitive loses its members (KHR_materials_variants).
+/// A mapping with a variant that occurs before in the primitive loses its members, and takes none of its variants
+/// (KHR_materials_variants).
 void checkMappings(const JsonValue& mappings, const std::string& name, Report& report)
 {
     std::unordered_set<double> taken;
@@ -119,14 +128,15 @@ void checkMappings(const JsonValue& mappings, const std::string& name, Report& r
     for (const JsonValue& mapping : mappings)
     {
         const std::string place = elementName(name, i++) + ".variants";
+        std::unordered_set<double> own;
         for (const JsonValue& variant : mapping["variants"])
         {
-            if (taken.insert(variant.number()).second) continue;
-            report.warn(fault(place, "each variant once", variant.description() + " again").message +
-                        "; the element is left out");
-            mapping.dropMembers();
+            if (taken.count(variant.number()) == 0 && own.insert(variant.number()).second) continue;
+            empty(mapping, fault(place, "each variant once", variant.description() + " again"), report);
+            own.clear();
             break;
         }
+        taken.merge(own);
     }
 }
 
@@ -287,9 +297,8 @@ void checkCameras(const JsonValue& cameras, Report& report)
         if (!type) continue;
         const JsonValue view = camera[type.text()], height = view["ymag"];
         if (view && !(height && height.number() == 0.0)) continue;
-        report.warn(fault(name + '.' + std::string(type.text()), "the size of the view", height.description()).message +
-                    "; the element is left out");
-        camera.dropMembers();
+        empty(camera, fault(name + '.' + std::string(type.text()), "the size of the view", height.description()),
+              report);
     }
 }
 
@@ -304,10 +313,7 @@ void checkLights(const JsonValue& lights, Report& report)
         const JsonValue type = light["type"], spot = light["spot"];
         const JsonValue inner = spot["innerConeAngle"], outer = spot["outerConeAngle"];
         if (type && type.text() == "spot" && !spot)
-        {
-            report.warn(fault(name, "an object", "nothing").message + "; the element is left out");
-            light.dropMembers();
-        }
+            empty(light, fault(name, "an object", "nothing"), report);
         else if (inner && inner.number() >= (outer ? outer.number() : defaultOuterAngle))
             leaveOut(spot, inner, name, "expected an angle below outerConeAngle, found " + inner.description(), report);
     }

@@ -275,7 +275,8 @@ using Type = JsonTree::Type;
 std::string rangeText(const SchemaRule& rule)
 {
     std::string text = rule.kind == Kind::Integer ? "an integer" : "a number";
-    text += " from " + numberText(rule.min) + " to " + numberText(rule.max);
+    text += rule.min == aboveZero ? " above 0 and up to " : " from " + numberText(rule.min) + " to ";
+    text += numberText(rule.max);
     if (rule.step != 1.0) text += " in steps of " + numberText(rule.step);
     return text;
 }

@@ -73,6 +73,7 @@ struct SchemaRule
     {
         return with(&SchemaRule::onFault, OnFault::LeaveOut).withRangeFault(OnFault::LeaveOut);
     }
+
     /// A fault in an element of the list, or in what the element requires, costs that element.
     constexpr SchemaRule emptyIfInvalid() const { return with(&SchemaRule::onFault, OnFault::Empty); }
     constexpr SchemaRule from(double first) const { return with(&SchemaRule::min, first); }

@@ -8,6 +8,7 @@
 #include "gltf/Export.h"
 #include "gltf/file/ModelBytes.h"
 
+#include <osgGpuAnimation/math/detail/RegularFile.h>
 #include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
 #include <osgDB/FileNameUtils>
@@ -106,17 +107,6 @@ std::string missingSerializers(const std::string& fileName)
     return "; characters need osgdb_serializers_osggpuanimation in the library path (OSG_LIBRARY_PATH)";
 }
 
-Result<void> checkRegularFile(const std::string& fileName)
-{
-    std::error_code failure;
-    const std::filesystem::file_status status = std::filesystem::status(fileName, failure);
-    if (!std::filesystem::exists(status)) return noSuchFile(fileName);
-    if (std::filesystem::is_directory(status)) return Error{"is a folder, not a file"};
-    // Reading a pipe or a device could block or never end.
-    if (!std::filesystem::is_regular_file(status)) return Error{"is not a regular file"};
-    return {};
-}
-
 } // namespace
 
 Result<gltf::ImportOptions> importOptions(const ModelArguments& arguments)
@@ -184,10 +174,11 @@ Result<osg::ref_ptr<osg::Node>> readScene(const std::string& fileName, gltf::Rep
 Result<gltf::ImportedModel> readModel(const std::string& fileName, const gltf::ImportOptions& options)
 {
     // Where there is no such file, the name may be one for a pseudo-loader.
-    const Result<void> regular = checkRegularFile(fileName);
+    std::error_code failure;
+    const bool isThere = std::filesystem::exists(fileName, failure);
     const bool isForViewers = osgDB::getLowerCaseFileExtension(fileName) == "studio";
-    if (!regular && (std::filesystem::exists(fileName) || isForViewers || !isSceneFormat(fileName)))
-        return regular.error();
+    if (!isThere && (isForViewers || !isSceneFormat(fileName))) return noSuchFile(fileName);
+    if (const Result<RegularFile> file = RegularFile::open(fileName); isThere && !file) return file.error();
 
     gltf::Messages messages;
     const Result<gltf::ImportedModel> model = importFile(fileName, options, messages);

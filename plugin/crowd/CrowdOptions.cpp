@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "crowd/CrowdOptions.h"
 
+#include "gltf/file/Elements.h"
 #include "gltf/file/Report.h"
 
 #include <osgGpuAnimation/frame/stage/LodSelection.h>
@@ -8,7 +9,6 @@
 
 #include <osgDB/FileNameUtils>
 
-#include <algorithm>
 #include <cmath>
 #include <set>
 #include <sstream>
@@ -19,8 +19,8 @@ namespace osgGpuAnimation::crowd
 namespace
 {
 
-const std::set<std::string> ofCrowdsAlone{"clips", "spacing", "seed", "outfits"};
-const std::set<std::string> ofSinglesAlone{"clip", "start", "randomStart", "speed", "loop", "fade"};
+constexpr const char* ofCrowdsAlone[] = {"clips", "spacing", "seed", "outfits"};
+constexpr const char* ofSinglesAlone[] = {"clip", "start", "randomStart", "speed", "loop", "fade"};
 
 /// False if the whole text is not a number.
 template <typename Number>
@@ -103,7 +103,10 @@ std::string modelOptions(const std::string& options)
 {
     std::vector<gltf::OptionWord> words = gltf::splitOptions(options);
     const auto isNotTheModels = [](const gltf::OptionWord& word)
-    { return (ofCrowdsAlone.count(word.name) > 0 && !namesClipsFile(word)) || ofSinglesAlone.count(word.name) > 0; };
+    {
+        return (gltf::contains(ofCrowdsAlone, word.name) && !namesClipsFile(word)) ||
+               gltf::contains(ofSinglesAlone, word.name);
+    };
     words.erase(std::remove_if(words.begin(), words.end(), isNotTheModels), words.end());
     return gltf::joinOptions(words);
 }
@@ -114,11 +117,11 @@ std::vector<std::string> optionHints(const std::string& options)
     std::vector<gltf::OptionHelp> own = optionHelp();
     own.erase(std::remove_if(own.begin(), own.end(),
                              [](const gltf::OptionHelp& help)
-                             { return ofCrowdsAlone.count(gltf::optionName(help)) == 0; }),
+                             { return !gltf::contains(ofCrowdsAlone, gltf::optionName(help)); }),
               own.end());
     std::vector<std::string> hints = gltf::misspeltOptions(options, own, gltf::optionHelp());
     for (const gltf::OptionWord& word : gltf::splitOptions(options))
-        if (ofSinglesAlone.count(word.name) > 0)
+        if (gltf::contains(ofSinglesAlone, word.name))
             hints.push_back(gltf::quoted(word.name) +
                             " applies to single characters only and has no effect on a crowd");
     return hints;

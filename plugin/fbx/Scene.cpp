@@ -21,6 +21,7 @@ namespace
 
 constexpr double ticksPerSecond = 46186158000.0, ticksPerSecondOfVersion8 = 141120000.0;
 constexpr int originalTimeDefinition = 127;
+
 /// A property that takes animate.
 struct MovingProperty
 {
@@ -28,6 +29,7 @@ struct MovingProperty
     AnimatedVector ModelTracks::*track;
     glm::dvec3 Model::*rest;
 };
+
 constexpr MovingProperty movingProperties[] = {{"Lcl Translation", &ModelTracks::translation, &Model::translation},
                                                {"Lcl Rotation", &ModelTracks::rotation, &Model::rotation},
                                                {"Lcl Scaling", &ModelTracks::scale, &Model::scale}};
@@ -252,9 +254,8 @@ void SceneReader::readModels()
         Model model;
         model.name = each.name;
         model.uniqueName = uniqueName(each.name, taken);
-        model.translation = vector(element, "Lcl Translation");
-        model.rotation = vector(element, "Lcl Rotation");
-        model.scale = vector(element, "Lcl Scaling", glm::dvec3(1.0));
+        for (const MovingProperty& each : movingProperties)
+            model.*each.rest = vector(element, each.name, model.*each.rest);
         model.rotationOrder = static_cast<int>(std::clamp(number(element, "RotationOrder", 0.0), 0.0, 6.0));
         if (model.rotationOrder == 6)
             _scene.warnings.push_back("node " + gltf::quoted(model.name) +

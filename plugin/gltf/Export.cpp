@@ -7,6 +7,7 @@
 #include "gltf/export/GlbWriter.h"
 #include "gltf/export/NodeWriter.h"
 #include "gltf/file/Elements.h"
+#include "gltf/import/Lights.h"
 
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/looks/shading/PunctualLight.h>
@@ -331,9 +332,7 @@ private:
         if (!source.getName().empty()) made["name"] = source.getName();
         if (max > 0.0f) made["color"] = {diffuse.x() / max, diffuse.y() / max, diffuse.z() / max};
         if (light->getRange() > 0.0f) made["range"] = light->getRange();
-        made["type"] = kind == PunctualLight::Kind::Directional ? "directional"
-                       : kind == PunctualLight::Kind::Spot      ? "spot"
-                                                                : "point";
+        made["type"] = typeOf(kind);
         if (const double inner = osg::DegreesToRadians(light->getInnerConeAngle()); kind == PunctualLight::Kind::Spot)
             made["spot"] = {{"innerConeAngle", inner < outer ? inner : 0.0}, {"outerConeAngle", outer}};
         const char* const extension = "KHR_lights_punctual";

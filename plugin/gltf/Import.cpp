@@ -43,11 +43,8 @@ Result<int> choose(const std::string& wanted, const std::string& kind, const std
     if (named != names.end()) return static_cast<int>(named - names.begin());
     const auto numbered = std::find(numbers.begin(), numbers.end(), parsedNumber<int>(wanted).value_or(-1));
     if (numbered != numbers.end()) return static_cast<int>(numbered - numbers.begin());
-    std::vector<std::string> known;
-    for (const std::string& name : names)
-        known.push_back(printable(name));
     return Error{kind + ' ' + quoted(wanted) + " was asked for; the " + owner + "'s " + kind +
-                 "s are: " + quotedNames(known)};
+                 "s are: " + namesText(names)};
 }
 
 /// The index of the variant to show first; -1: none.
@@ -71,9 +68,7 @@ double nextRandomShare(std::uint32_t seed)
 /// The index in the set of the clip to play first; -1: there is none.
 Result<int> chooseClip(const ImportedModel& imported, const ImportOptions& options)
 {
-    std::vector<std::string> names;
-    for (std::size_t clip = 0; imported.set && clip < imported.set->clips().size(); ++clip)
-        names.push_back(imported.set->clips()[clip].name());
+    const std::vector<std::string> names = imported.set ? namesIn(imported.set->clips()) : std::vector<std::string>();
     if (options.clip) return choose(*options.clip, "clip", "file", names, imported.animationOfClip);
     return names.empty() ? -1 : 0;
 }

@@ -25,10 +25,13 @@ namespace osgGpuAnimation::tool
 ///     paletteEntries
 ///     bounds       of the rest pose in the file's axes: [least corner, greatest corner], null if nothing is drawn
 ///     clips        index (the file's), name, seconds, keyframes, form (linear or spline), bounds (of what moves)
+///     keyframes    count, bytes (on the GPU), snapshotBytes; of compact clips also error, tolerance, longestSide
 ///     meshes       count, primitives, vertices, skinned, rigid, still (primitives each), morphTargets
 ///     materials    name, alphaMode (OPAQUE, MASK, BLEND), alphaCutoff (of MASK), doubleSided, unlit, maps (map, image:
 ///                  the file's index, size: [width, height], null for a missing picture)
 ///     variants, extensions                              names
+///     lights       index (the file's), node, number (OpenGL's; null: left out), and with a number name, type
+///     cameras      index (the file's), name, node, type (perspective or orthographic)
 ///     gpuBytes     animation, meshes, textures, total   in GPU buffers, without the driver's own memory
 ///     warnings, notes
 struct InspectCommand : ModelArguments

@@ -205,9 +205,7 @@ ordered_json reportLights(const gltf::ImportedModel& model)
             const auto& made = dynamic_cast<const PunctualLight&>(*light.source->getLight());
             report["number"] = made.getLightNum();
             report["name"] = made.getName();
-            report["type"] = made.getKind() == PunctualLight::Kind::Directional ? "directional"
-                             : made.getKind() == PunctualLight::Kind::Spot      ? "spot"
-                                                                                : "point";
+            report["type"] = gltf::typeOf(made.getKind());
         }
         lights.push_back(std::move(report));
     }

@@ -30,7 +30,7 @@ enum class Look
 /// supports them.
 ///
 ///     Result<std::unique_ptr<PictureViewer>> viewer = PictureViewer::create(800, 600, Look::Studio, new Environment);
-///     viewer.value()->show(scene, points);
+///     viewer.value()->show(scene, points, std::nullopt);
 ///     osg::ref_ptr<osg::Image> image = viewer.value()->draw(0.5);
 class PictureViewer
 {

@@ -111,9 +111,8 @@ std::vector<glm::dvec3> GpuPoses::capture(SkinnedGeometry& points)
     const auto bytes = static_cast<GLsizeiptr>(numbers.size() * sizeof(float));
     GLuint buffer = 0;
     gl->glGenBuffers(1, &buffer);
-    gl->glBindBuffer(GL_TRANSFORM_FEEDBACK_BUFFER, buffer);
+    gl->glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, buffer); // and as the target's buffer
     gl->glBufferData(GL_TRANSFORM_FEEDBACK_BUFFER, bytes, nullptr, GL_STREAM_READ_ARB);
-    gl->glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, buffer);
 
     osg::RenderInfo renderInfo(&state, nullptr);
     glEnable(GL_RASTERIZER_DISCARD);

@@ -356,8 +356,8 @@ TEST(RootMotionTest, anyParentsAxesAndFirstPoseKeepTheOldPose)
         {
             const bool isSpline = interpolation == Channel::Interpolation::CubicSpline;
             SCOPED_TRACE(std::to_string(axes.up.x) + (isSpline ? " spline" : " linear"));
-            const glm::dquat parents = Rotation::quaternion(Rotation::unit(glm::dvec4(joints[0].rest.rotation))) *
-                                       Rotation::quaternion(Rotation::unit(glm::dvec4(joints[1].rest.rotation)));
+            const glm::dquat parents =
+                Rotation::unitQuaternion(joints[0].rest.rotation) * Rotation::unitQuaternion(joints[1].rest.rotation);
             const glm::dvec3 up = glm::normalize(axes.up);
             Channel turn{Channel::Path::Rotation, interpolation, 2, {}, {}};
             Channel place{Channel::Path::Translation, interpolation, 2, {}, {}};

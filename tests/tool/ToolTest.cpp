@@ -384,8 +384,6 @@ TEST_F(ToolTest, poseLikeAnswersItsOwnDocument)
 namespace
 {
 
-using nlohmann::json;
-
 const std::string faultyFiles = std::string(OSGGPUANIMATION_SHARED_ASSETS) + "/bad_gltf/";
 
 bool names(const json& entry, const std::string& said)

@@ -8,7 +8,6 @@
 #include <osgGpuAnimation/math/Result.h>
 
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>

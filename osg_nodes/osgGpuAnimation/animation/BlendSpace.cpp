@@ -12,7 +12,6 @@
 #include <numeric>
 #include <optional>
 #include <set>
-#include <tuple>
 
 namespace osgGpuAnimation
 {
@@ -142,7 +141,7 @@ std::vector<PlaneCell> chain(const std::vector<std::size_t>& order)
 /// The Delaunay triangulation: the cells cover the convex hull of the points. Points on one line give the segments
 /// between neighbours, a single point one cell of its own. points: different and finite.
 /// Source: Sloan, "A fast algorithm for constructing Delaunay triangulations in the plane" (1987), with points added in
-/// the order of their coordinates; O(n²).
+/// the order of their coordinates; O(n² log n).
 std::vector<PlaneCell> triangulate(const std::vector<glm::dvec2>& points)
 {
     if (points.empty()) return {};
@@ -346,16 +345,16 @@ BlendSpace::Mix BlendSpace::mixAt(const glm::dvec2& parameter) const
         nearestCell = &cell;
     }
     constexpr double negligibleWeight = 1e-9;
+    const auto isLighter = [](const Weight& a, const Weight& b)
+    { return a.weight < b.weight || (a.weight == b.weight && a.point > b.point); };
     Mix mix;
     double whole = 0.0;
     for (std::size_t corner = 0; corner < nearestCell->count; ++corner)
     {
         const Weight added{nearestCell->points[corner], nearest.weights[corner]};
         if (added.weight < negligibleWeight) continue;
-        const auto isLighter = [&](const Weight& other)
-        { return std::tie(added.weight, other.point) < std::tie(other.weight, added.point); };
         std::size_t place = mix.count++;
-        for (; place > 0 && isLighter(mix.weights[place - 1]); --place)
+        for (; place > 0 && isLighter(added, mix.weights[place - 1]); --place)
             mix.weights[place] = mix.weights[place - 1];
         mix.weights[place] = added;
         whole += added.weight;

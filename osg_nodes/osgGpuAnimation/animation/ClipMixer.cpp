@@ -404,9 +404,12 @@ void ClipMixer::moveSpace(ActiveSpace& space, double seconds, bool isMoving)
         if (at(i).space != space.number) continue;
         const BlendSpace::Point& point = space.space->points()[at(i).point];
         PlaybackStep& move = at(i).move = turn;
-        if (isMoving && newest.loopMode() == LoopMode::Loop) move = loopStep(point, before, space.phase, rounds, own);
+        if (newest.loopMode() == LoopMode::Loop)
+        {
+            if (isMoving) move = loopStep(point, before, space.phase, rounds, own);
+            continue;
+        }
         const double factor = round.seconds() > 0.0 ? point.duration() / round.seconds() : 0.0;
-        if (newest.loopMode() == LoopMode::Loop) continue;
         move.from *= factor;
         move.to *= factor;
         move.distance = finiteProduct(move.distance, factor);

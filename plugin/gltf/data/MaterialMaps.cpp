@@ -82,7 +82,7 @@ void readSpecularGlossiness(const tinygltf::Value& extension, PbrMaterial& outMa
 }
 
 /// The number of these coordinates, which are added if there is room; -1: a vertex has no room for them.
-int numberOf(const TextureCoordinates& coordinates, std::vector<TextureCoordinates>& all)
+int addedCoordinates(const TextureCoordinates& coordinates, std::vector<TextureCoordinates>& all)
 {
     const auto known = std::find(all.begin(), all.end(), coordinates);
     const int number = static_cast<int>(known - all.begin());
@@ -116,7 +116,7 @@ MaterialMaps mapsOf(const tinygltf::Material& material, bool allMaps,
         if (texture.index < 0) return false;
         const std::string animated = isAnimated && isAnimated(path + member) ? path + member : "";
         const int number =
-            use == MapUse::Shown ? numberOf(TextureCoordinates(texture, animated), maps.coordinates) : -1;
+            use == MapUse::Shown ? addedCoordinates(TextureCoordinates(texture, animated), maps.coordinates) : -1;
         if (use == MapUse::Shown && number < 0) use = MapUse::NoCoordinates;
         maps.maps.push_back({member, place, texture.index, isColor, use, number, animated});
         return use == MapUse::Shown;

@@ -3,6 +3,7 @@
 
 #include "gltf/data/TextureCoordinates.h"
 #include "gltf/file/Elements.h"
+
 #include <algorithm>
 #include <optional>
 #include <string>

@@ -51,5 +51,7 @@ struct FileInfluences
     std::vector<std::uint32_t> joints;
     std::vector<float> weights;
 };
+
 std::vector<FileInfluences> readFileInfluences(const tinygltf::Model& model, const tinygltf::Primitive& primitive);
+
 } // namespace osgGpuAnimation::gltf

@@ -17,6 +17,7 @@
 #include <string>
 #include <tuple>
 #include <vector>
+
 namespace osgGpuAnimation::gltf
 {
 

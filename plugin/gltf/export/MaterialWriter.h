@@ -45,4 +45,5 @@ private:
 };
 
 bool hasTrueUniform(const osg::StateSet& state, const char* name);
+
 } // namespace osgGpuAnimation::gltf

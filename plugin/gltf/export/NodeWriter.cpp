@@ -5,6 +5,9 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
+#include <cmath>
+
 namespace osgGpuAnimation::gltf
 {
 

@@ -11,8 +11,6 @@
 
 #include <osg/Matrixd>
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <deque>
 #include <optional>
@@ -54,8 +52,8 @@ public:
     /// The node of a place.
     std::size_t nodeOf(NodePlace& place);
     /// The node at the place that gets the member: the place's own if it does not have it, else a new one below it,
-    /// with the name. place: null: the scene. isHidden: a new one in any case,
-    /// which is not drawn, as those below it (KHR_node_visibility).
+    /// with the name. place: null: the scene. isHidden: a new one in any case, which is not drawn, as those below it
+    /// (KHR_node_visibility).
     std::size_t nodeFor(NodePlace* place, const char* member, const std::string& name, bool isHidden = false);
 
     nlohmann::json& at(std::size_t node) { return _writer.document["nodes"][node]; }

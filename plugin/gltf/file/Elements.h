@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <iterator>
 #include <utility>
+
 namespace osgGpuAnimation::gltf
 {
 
@@ -26,4 +27,5 @@ bool contains(const List& list, const Value& value)
 {
     return std::find(std::begin(list), std::end(list), value) != std::end(list);
 }
+
 } // namespace osgGpuAnimation::gltf

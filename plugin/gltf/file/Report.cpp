@@ -52,6 +52,13 @@ std::string printable(std::string_view text, std::size_t max)
     return out;
 }
 
+std::string namesText(std::vector<std::string> names)
+{
+    for (std::string& name : names)
+        name = printable(name);
+    return quotedNames(names);
+}
+
 std::string quoted(std::string_view text)
 {
     return '"' + printable(text) + '"';

@@ -79,12 +79,15 @@ struct PrimitiveName
 
 /// Text of the file for a message: in quotation marks, clipped, printable ASCII only.
 std::string quoted(std::string_view text);
-inline std::string quoted(const std::string& text)
+inline std::string quoted(const std::string& text) // not std::quoted
 {
     return quoted(std::string_view(text));
-} // not std::quoted
+}
+
 /// The same without the quotation marks.
 std::string printable(std::string_view text, std::size_t max = 80);
+/// See quotedNames().
+std::string namesText(std::vector<std::string> names);
 /// The shortest text that reads back as the number: 8, 0.5, 1e+30.
 std::string numberText(double number);
 
@@ -94,6 +97,7 @@ inline Error fault(std::string_view element, std::string_view expected, std::siz
 {
     return fault(element, expected, std::to_string(found));
 }
+
 /// `expected …, found …`, for callers that name the element.
 Error unexpected(const std::string& expected, const std::string& found);
 

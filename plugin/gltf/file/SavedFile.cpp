@@ -2,14 +2,13 @@
 #include "gltf/file/SavedFile.h"
 
 #include "gltf/file/Elements.h"
+
 #include <osgGpuAnimation/math/detail/System.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <iterator>
 #include <system_error>
 
 namespace osgGpuAnimation::gltf

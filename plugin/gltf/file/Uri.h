@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 #include <vector>
+
 namespace osgGpuAnimation::gltf
 {
 
@@ -49,6 +50,7 @@ public:
         : _modelFile(std::move(modelFile)), _allowOutsideFiles(allowOutsideFiles)
     {
     }
+
     /// Opens the file of a URI that is not a data URI. Errors are `expected …, found …` or name the file.
     Result<RegularFile> open(std::string_view uri) const;
 

@@ -4,6 +4,7 @@
 #include "gltf/data/AnimationPointers.h"
 #include "gltf/data/UniqueNames.h"
 #include "gltf/file/Elements.h"
+
 #include <osg/Math>
 #include <osg/ValueObject>
 

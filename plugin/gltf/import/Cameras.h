@@ -6,7 +6,6 @@
 #include <osg/CameraView>
 #include <tiny_gltf.h>
 
-#include <string>
 #include <vector>
 
 namespace osgGpuAnimation::gltf

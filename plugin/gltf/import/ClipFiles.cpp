@@ -132,13 +132,6 @@ std::vector<std::string> namesInSkins(const AnimationSet& set, const std::vector
     return chosen;
 }
 
-std::string namesText(std::vector<std::string> names)
-{
-    for (std::string& name : names)
-        name = printable(name);
-    return quotedNames(names);
-}
-
 /// The joints of a skeleton by name, without namespaces.
 class JointsByName
 {

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <numeric>
 #include <string>
+
 namespace osgGpuAnimation::gltf
 {
 
@@ -75,6 +76,12 @@ std::vector<std::size_t> nearest(const tinygltf::Model& model, const NodeTree& t
 }
 
 } // namespace
+
+const char* typeOf(PunctualLight::Kind kind)
+{
+    if (kind == PunctualLight::Kind::Directional) return "directional";
+    return kind == PunctualLight::Kind::Spot ? "spot" : "point";
+}
 
 std::vector<ImportedLight> findLights(const tinygltf::Model& model, const NodeTree& tree)
 {

@@ -65,6 +65,7 @@ public:
         : _model(model), _maps(maps), _budget(budget), _report(report)
     {
     }
+
     /// The primitives of a mesh, ascending, without those that are drawn together with an earlier one.
     const std::vector<int>& firstPrimitives(int mesh) { return groupsOf(mesh).firsts; }
     /// One of firstPrimitives(), and those drawn together with it. skinned: by a skin, which makes vertices expensive:

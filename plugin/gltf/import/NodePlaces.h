@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <utility>
 #include <vector>
+
 namespace osgGpuAnimation
 {
 class AnimatedCharacter;
@@ -32,6 +33,7 @@ public:
         : _model(model), _tree(tree), _joints(joints), _character(character), _places(std::move(transforms))
     {
     }
+
     /// Adds a child to the node's place. node: in the drawn part.
     void add(std::size_t node, osg::Node* child);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/math/Result.h>
+
 #include <cstddef>
 #include <map>
 #include <string>
@@ -22,7 +24,7 @@ std::vector<std::string> namesIn(const std::vector<T>& elements)
 {
     std::vector<std::string> names;
     for (const T& element : elements)
-        names.push_back(element.name);
+        names.push_back(elementName(element));
     return names;
 }
 

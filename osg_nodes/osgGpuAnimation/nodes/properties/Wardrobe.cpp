@@ -86,7 +86,7 @@ public:
         if (!_lost.empty())
             return Error{"the character has no joints " + quotedNames(_lost) +
                          ", nor any joint that is above them in the garment; its joints are " +
-                         quotedNames(namesIn(body->skeleton().joints()))};
+                         quotedNames(body->skeleton().joints())};
         FittedGarment fitted{{_further.joints.size(), _followed, {}}, body, {}};
         if (_further.joints.empty()) return fitted;
         constexpr std::size_t maxEntries = 65536; // entries are 16-bit numbers

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <sstream>
+
 namespace osgGpuAnimation::gltf
 {
 

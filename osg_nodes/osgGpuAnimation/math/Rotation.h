@@ -32,7 +32,7 @@ inline glm::dmat3 matrix(const glm::dvec4& q)
     return glm::mat3_cast(quaternion(q));
 }
 
-/// The same in the form that tracks have.
+/// numbers() as floats, the form that tracks have.
 inline glm::vec4 toFloats(const glm::dquat& q)
 {
     return glm::vec4(numbers(q));
@@ -41,7 +41,7 @@ inline glm::vec4 toFloats(const glm::dquat& q)
 /// q / |q|; the identity if q has no direction (its length is 0 or not finite), so that no NaN results.
 glm::dvec4 unit(const glm::dvec4& q);
 
-/// The same of a track's rotation.
+/// unit() of a track's rotation, as a GLM quaternion.
 inline glm::dquat unitQuaternion(const glm::vec4& q)
 {
     return quaternion(unit(glm::dvec4(q)));

@@ -8,7 +8,6 @@
 #include <osgUtil/Statistics>
 
 #include <algorithm>
-#include <cstdint>
 
 namespace osgGpuAnimation
 {

@@ -56,6 +56,7 @@ struct EvaluationContext
         Local,
         World,
     };
+
     /// variant: of all stages but the last two. shape: of the constraint.
     FeedbackPass& pass(Stage stage, const PoseVariant& variant = {}, const ConstraintShape& shape = {});
     /// Makes a pass with the mix stage current, with its input.

@@ -52,6 +52,7 @@ public:
         Merged merged; ///< the meshes have no StateSets
         osg::Vec2 metallicRoughness;
     };
+
     /// Of the meshes among the group's children (see forEachMesh()), without levels yet, for includeMade().
     static std::shared_ptr<CharacterLevels> unmade(const osg::Group& meshes, const AnimationSet& set)
     {

@@ -30,6 +30,7 @@ struct CrowdDetail
     {
         return crowd._meshes._levels;
     }
+
     /// Sets what setPixelError() would request; call it before.
     static void setLevels(AnimatedCrowd& crowd, std::shared_ptr<const CharacterLevels> levels)
     {

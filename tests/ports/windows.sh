@@ -57,13 +57,13 @@ build_small_libraries()
 build_osg()
 {
     local libraries=(OpenThreads osg osgUtil osgDB osgGA osgText osgViewer osgAnimation osgShadow osgFX)
-    local formats=(osg osgshadow png jpeg rgb bmp tga hdr rot)
-    local plugins=("${formats[@]/#/osgdb_}" osgdb_serializers_osg{,util,ga,text,viewer,animation,shadow,fx})
+    local formats=(osg png jpeg rgb bmp tga hdr rot)
+    local plugins=("${formats[@]/#/osgdb_}" osgdb_osgshadow osgdb_serializers_osg{,util,ga,text,viewer,animation,shadow,fx})
     local source=$folder/sources/openscenegraph
     # What CMake would find out by running programs; C++14, because OSG has names that C++17 has, too (byte).
     local options=(-D_OPENTHREADS_ATOMIC_USE_{GCC_BUILTINS=1,MIPOSPRO_BUILTINS=0,SUN=0,WIN32_INTERLOCKED=0,BSD_ATOMIC=0}
         -DOSG_DETERMINE_WIN_VERSION=OFF -DCMAKE_CXX_STANDARD=14 -DCMAKE_CXX_FLAGS=-Wno-narrowing
-        -DBUILD_OSG_PLUGINS_BY_DEFAULT=OFF -DLIB_POSTFIX=)
+        -DBUILD_OSG_PLUGINS_BY_DEFAULT=OFF -DBUILD_OSG_PLUGIN_SHADOW=ON -DLIB_POSTFIX=)
     for format in "${formats[@]}"; do
         options+=("-DBUILD_OSG_PLUGIN_${format^^}=ON")
     done

@@ -40,7 +40,7 @@ osgDB::ReaderWriter::ReadResult ModelReader::import(const std::string& fileName,
         const Result<gltf::ImportOptions> parsed = gltf::parseOptions(given);
         if (!parsed) return ReadResult(parsed.error().message);
         gltf::ImportOptions own = parsed.value();
-        gltf::Messages messages;
+        gltf::Messages messages, failed;
         const Result<std::string> bytes = read(own, messages);
         if (!bytes) return ReadResult(bytes.error().message);
         for (const std::string& hint : gltf::misspeltOptions(given, gltf::optionHelp()))
@@ -48,17 +48,17 @@ osgDB::ReaderWriter::ReadResult ModelReader::import(const std::string& fileName,
 #ifdef OSGGPUANIMATION_ASSIMP
         own.otherFormats = assimp::readAsGlbApart;
 #endif
-        const Result<gltf::ImportedModel> model = gltf::importModel(bytes.value(), fileName, own);
-        if (!model) return ReadResult(model.error().message);
+        const Result<gltf::ImportedModel> model = gltf::importModel(bytes.value(), fileName, own, &failed);
         const std::string subject = fileName.empty() ? "glTF stream" : fileName;
-        for (const gltf::Messages* each : {&std::as_const(messages), &model.value().messages})
+        for (const gltf::Messages* each :
+             {&std::as_const(messages), model ? &model.value().messages : &std::as_const(failed)})
         {
             for (const std::string& warning : each->warnings)
                 OSG_WARN << subject << ": " << warning << std::endl;
             for (const std::string& note : each->notes)
                 OSG_INFO << subject << ": " << note << std::endl;
         }
-        return ReadResult(model.value().root.get());
+        return model ? ReadResult(model.value().root.get()) : ReadResult(model.error().message);
     }
     catch (const std::bad_alloc&)
     {

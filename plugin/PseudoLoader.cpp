@@ -28,7 +28,8 @@ PseudoLoader::ReadResult PseudoLoader::readModel(const std::string& modelFile, c
     ReadResult model = osgDB::Registry::instance()->readNode(modelFile, options);
     if (model.validNode()) return model;
     if (!model.message().empty()) return ReadResult(modelFile + ": " + model.message());
-    return ReadResult("the " + owner + "'s model " + modelFile + " cannot be read");
+    const bool isMissing = model.status() == ReadResult::FILE_NOT_FOUND;
+    return ReadResult("the " + owner + "'s model " + modelFile + (isMissing ? " does not exist" : " cannot be read"));
 }
 
 } // namespace osgGpuAnimation

@@ -56,7 +56,9 @@ Result<std::string> readGltf(const std::string& fileName, const gltf::ImportOpti
     if (!isSceneFormat(fileName)) return gltf::readModelFile(fileName, options);
     const Result<osg::ref_ptr<osg::Node>> scene = readScene(fileName, report);
     if (!scene) return scene.error();
-    return gltf::exportModel(*scene.value(), report);
+    const Result<std::string> bytes = gltf::exportModel(*scene.value(), report);
+    if (!bytes) return Error{bytes.error().message + missingSerializers(fileName)};
+    return bytes;
 }
 
 /// messages: takes those of the file, also before an error.
@@ -96,7 +98,8 @@ Error noSuchFile(const std::string& fileName)
     return Error{"there is no such file"};
 }
 
-/// For messages: what a stored scene may lack.
+} // namespace
+
 std::string missingSerializers(const std::string& fileName)
 {
     const std::string extension = osgDB::getLowerCaseFileExtension(fileName);
@@ -106,8 +109,6 @@ std::string missingSerializers(const std::string& fileName)
     if (std::filesystem::exists(osgDB::findLibraryFile(library))) return "";
     return "; characters need osgdb_serializers_osggpuanimation in the library path (OSG_LIBRARY_PATH)";
 }
-
-} // namespace
 
 Result<gltf::ImportOptions> importOptions(const ModelArguments& arguments)
 {
@@ -160,6 +161,8 @@ Result<osg::ref_ptr<osg::Node>> readScene(const std::string& fileName, gltf::Rep
     osgDB::ReaderWriter::ReadResult read = osgDB::Registry::instance()->readNode(fileName, nullptr);
     if (read.status() == osgDB::ReaderWriter::ReadResult::FILE_NOT_FOUND) return noSuchFile(fileName);
     const osg::ref_ptr<osg::Node> scene = read.getNode();
+    std::error_code failure;
+    if (!scene && read.message().empty() && !std::filesystem::exists(fileName, failure)) return noSuchFile(fileName);
     if (!scene)
         return Error{"OSG cannot read it" + (read.message().empty() ? "" : ": " + read.message()) +
                      missingSerializers(fileName)};

@@ -32,6 +32,9 @@ void printClipWarnings(const std::string& file, const gltf::Messages& messages);
 /// True for names of files that readModel() reads, by their extension.
 bool isModelFormat(const std::string& fileName);
 
+/// For messages about a scene that OSG has stored: what it may lack. Begins with a semicolon; empty: nothing.
+std::string missingSerializers(const std::string& fileName);
+
 /// Reads a file with OSG's plugins. A warning says if it has characters of osgAnimation. Errors: the file does not
 /// exist, or no plugin reads it.
 Result<osg::ref_ptr<osg::Node>> readScene(const std::string& fileName, gltf::Report& report);

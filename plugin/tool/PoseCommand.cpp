@@ -6,6 +6,7 @@
 #include "tool/PoseEvaluator.h"
 
 #include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/math/detail/RegularFile.h>
 
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
@@ -14,7 +15,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <map>
 #include <utility>
@@ -59,11 +59,11 @@ PoseRequest readRequest(const nlohmann::json& document)
 /// schema, a missing member or one of another type.
 Result<PoseRequest> readPoseRequest(const std::string& fileName)
 {
-    std::ifstream file(fileName, std::ios::binary);
-    if (!file) return Error{"cannot be read"};
+    const Result<std::string> text = RegularFile::readWhole(fileName, std::uint64_t(1) << 30);
+    if (!text) return text.error();
     try
     {
-        const nlohmann::json document = nlohmann::json::parse(file);
+        const nlohmann::json document = nlohmann::json::parse(text.value());
         if (!document.is_object() || document.value("schema", "") != "gltf-pose/1")
             return Error{"is not a document of schema gltf-pose/1"};
         return readRequest(document);
@@ -71,10 +71,6 @@ Result<PoseRequest> readPoseRequest(const std::string& fileName)
     catch (const nlohmann::json::exception& fault)
     {
         return Error{fault.what()};
-    }
-    catch (const std::ios_base::failure&)
-    {
-        return Error{"cannot be read"};
     }
 }
 

@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
 #include <functional>
 #include <iostream>
@@ -59,7 +58,8 @@ character), clips, meshes, materials, lights, cameras, extensions, bytes on the 
 const char* const poseHelp =
     R"(Writes JSON of the schema gltf-pose/1, with the world matrices of the nodes that are joints (null for
 others), joint matrices by skin, morph weights, bounding boxes and vertex positions, in the file's own axes (+Y up),
-units and numbers; matrices are column-major. Times beyond the clip hold its ends: nothing loops.
+units and numbers; matrices are column-major. Times beyond the clip hold its ends: nothing loops. One of --time, --bind
+and --like is required.
 
   osggpuanim pose fox.glb --clip Run --time 0 --time 0.25 -o run.json
   osggpuanim pose fox.glb --bind                             the nodes as the file has them, no clip
@@ -95,16 +95,15 @@ differs), as one .glb: meshes with skins and morph targets, materials with pictu
 
 std::string checkFinite(const std::string& text)
 {
-    char* end = nullptr;
-    const double number = std::strtod(text.c_str(), &end);
-    return text.empty() || *end != '\0' || !std::isfinite(number) ? "'" + text + "' is not a number" : "";
+    const bool isFinite = std::isfinite(gltf::parsedNumber<double>(text).value_or(NAN));
+    return isFinite ? "" : "'" + text + "' is not a number";
 }
 
 std::string checkFraction(const std::string& text)
 {
     const std::string fault = checkFinite(text);
     if (!fault.empty()) return fault;
-    const double number = std::strtod(text.c_str(), nullptr);
+    const double number = gltf::parsedNumber<double>(text).value_or(0.0);
     return number > 0.0 && number <= 1.0 ? "" : "'" + text + "' is not above 0 and at most 1";
 }
 
@@ -124,8 +123,7 @@ std::string checkSceneFile(const std::string& name)
 /// "800x600" to two numbers; throws CLI11's validation error.
 void readSize(const std::string& text, RenderCommand& command)
 {
-    int width = 0;
-    int height = 0;
+    int width = 0, height = 0;
     char rest = '\0';
     const bool isSize = std::sscanf(text.c_str(), "%5dx%5d%c", &width, &height, &rest) == 2;
     if (!isSize || std::min(width, height) < 1 || std::max(width, height) > RenderCommand::maxSize)

@@ -71,7 +71,7 @@ const FaultCase faults[] = {
     {"arm.gltf.3y4.crowd", "", "size"},
     {"arm.gltf.crowd", "", "size"},
     {"arm.crowd", "", "size"},
-    {"absent.gltf.2x2.crowd", "", "absent.gltf"},
+    {"absent.gltf.2x2.crowd", "", "absent.gltf does not exist"},
     {"absent.gltf.1000x1000.crowd", "", "absent.gltf"}, // the largest size is no fault
     {"absent.gltf.1x1000000.crowd", "", "absent.gltf"},
     {"absent.gltf.1x1000001.crowd", "", "1000000"},
@@ -286,7 +286,7 @@ using StudioPluginTest = PseudoLoaderTest;
 TEST_F(StudioPluginTest, faultsHaveAMessage)
 {
     const std::pair<const char*, const char*> faults[] = {
-        {"absent.gltf.studio", "absent.gltf"},
+        {"absent.gltf.studio", "absent.gltf does not exist"},
         {"absent.gltf.STUDIO", "absent.gltf"},
         {"arm.studio", "is not a model's file, like fox.glb in fox.glb.studio"},
         {"arm.gltf.0x0.crowd.studio", "arm.gltf.0x0.crowd: a crowd of 0x0 is empty"},

@@ -159,6 +159,13 @@ TEST_F(PluginTest, faultsHaveAMessage)
     }
 }
 
+TEST_F(PluginTest, aRefusalComesWithTheWarningsBeforeIt)
+{
+    log->text.clear();
+    expectError("arm.gltf", "clips=Run.glb clip=Run", "clip \"Run\" was asked for");
+    EXPECT_NE(log->text.find("clips \"Run.glb\": the file does not exist"), std::string::npos) << log->text;
+}
+
 TEST_F(PluginTest, faultyFilesAnswerAsExpected)
 {
     SKIP_WITHOUT_SHARED_FILE("bad_gltf/expected.json");

@@ -62,6 +62,7 @@ const Failure failures[] = {
     {"inspect flag.gltf --compact 0", "", "'0' is not above 0 and at most 1"},
     {"inspect flag.gltf --compact nan", "", "'nan' is not a number"},
     {"inspect missing.glb --json", "missing.glb", "no such file"},
+    {"inspect stored.osgt", "stored.osgt", "osgdb_serializers_osggpuanimation in the library path"},
     {"inspect out", "out", "expected a regular file, found a folder"},
     {"inspect empty.glb", "empty.glb", "empty"},
     {"inspect cut.gltf", "cut.gltf", ""},
@@ -83,7 +84,7 @@ const Failure failures[] = {
     {"pose flag.gltf --clip Fly --time 0 -o out/kept.json", "flag.gltf", "Fly"},
     {"pose flag.gltf --clips strange.gltf --time 0", "flag.gltf", "strange.gltf"},
     {"pose flag.gltf --time 0 --clip-joints missing.json", "missing.json", "no such file"},
-    {"pose flag.gltf --like missing.json", "missing.json", "cannot be read"},
+    {"pose flag.gltf --like missing.json", "missing.json", "the file does not exist"},
     {"pose flag.gltf --like out", "out", ""},
     {"pose flag.gltf --like cut.gltf", "cut.gltf", ""},
     {"pose flag.gltf --like notes.json", "notes.json", "gltf-pose/1"},
@@ -115,6 +116,7 @@ const Failure failures[] = {
     {"render flag.gltf -o out/x.png --look moon", "", "'moon' is not one of studio|sun|furnace|file"},
     {"render flag.gltf -o out/x.png --environment wide.png --look sun", "", "--look excludes --environment"},
     {"render missing.glb -o out/x.png", "missing.glb", "no such file"},
+    {"render missing.png -o out/x.png", "missing.png", "there is no such file"},
     {"render flag.gltf.studio -o out/x.png", "flag.gltf.studio", "osggpuanim render flag.gltf`"},
     {"render flag.gltf.0x2.crowd -o out/x.png", "flag.gltf.0x2.crowd", "a crowd of 0x2 is empty"},
     {"render clips.gltf -o out/kept.png", "clips.gltf", "there is nothing to draw"},
@@ -144,6 +146,7 @@ const Failure failures[] = {
     {"convert flag.gltf --clips other.gltf --clips strange.gltf -o out/x.glb", "flag.gltf", "strange.gltf"},
     {"convert flag.gltf --clips none.gltf -o out/x.glb", "flag.gltf", "the file has no clips"},
     {"convert flag.gltf --clips other.gltf --clip-joints cut.gltf -o out/x.glb", "flag.gltf", "clipJoints"},
+    {"convert stored.osgt -o out/x.glb", "out/x.glb", "osgdb_serializers_osggpuanimation in the library path"},
     {"convert box.osgt --clips other.gltf -o out/x.glb", "box.osgt", "there is no character"},
     {"convert box.osgt --compact 0.1 -o out/x.osgb", "box.osgt", "there is no character"},
     {"convert flag.gltf -o out/kept.osgb", "out/kept.osgb", "osgdb_serializers_osggpuanimation"},
@@ -168,9 +171,12 @@ void makeFiles(const ScratchFolder& folder)
     folder.write("cut.gltf", swingingFlag().substr(0, 300));
     folder.write("cut.glb", std::string("glTF\2\0\0\0\xff\0\0\0", 12));
     folder.write("cut.osgb", std::string("\xa1\x91\x45\x10\x1a\xfb\x80\x1e\1\0\0\0", 12));
-    folder.write("box.osgt",
-                 "#Ascii Scene\n#Version 161\n#Generator OpenSceneGraph 3.6.5\n\nosg::Group {\n  UniqueID 1\n"
-                 "  Name \"box\"\n}\n");
+    const std::string beginning =
+        "#Ascii Scene\n#Version 161\n#Generator OpenSceneGraph 3.6.5\n\nosg::Group {\n  UniqueID 1\n";
+    folder.write("box.osgt", beginning + "  Name \"box\"\n}\n");
+    folder.write("stored.osgt",
+                 beginning +
+                     "  Children 1 {\n    osgGpuAnimation::AnimatedCharacter {\n      UniqueID 2\n    }\n  }\n}\n");
     folder.write("notes.txt2", "no model");
     folder.write("notes.json", R"({"schema": "something else"})");
     folder.write("bare.json", R"({"schema": "gltf-pose/1", "frames": 7})");

@@ -41,6 +41,12 @@ Callback* callbackOf(osg::Node& node)
     return nullptr;
 }
 
+/// For messages: the target's name and the channel's own.
+std::string nameOf(const osgAnimation::Channel& channel)
+{
+    return channel.getTargetName() + (channel.getName().empty() ? "" : '.' + channel.getName());
+}
+
 /// What the conversion looks for in a scene.
 class SceneParts : public SceneVisitor
 {
@@ -113,8 +119,8 @@ public:
 
     /// Null, with a warning, if the skeleton has to stay.
     osg::ref_ptr<AnimatedCharacter> character(const std::vector<Manager>& managers);
-    /// The channels' targets that the clips have.
-    const std::set<std::string>& targets() const { return _targets; }
+    /// Names of the channels that the clips have.
+    const std::set<std::string>& channels() const { return _channels; }
 
 private:
     bool findBones();
@@ -122,6 +128,11 @@ private:
     void addClips(const std::vector<Manager>& managers, AnimationParts& parts);
     bool addWeights(const osgAnimation::Animation& animation, const AnimationParts& parts, ClipBuilder& builder);
     void addChildren(AnimatedCharacter& character);
+    void take(const osgAnimation::ChannelList& channels)
+    {
+        for (const osg::ref_ptr<osgAnimation::Channel>& channel : channels)
+            _channels.insert(nameOf(*channel));
+    }
     bool stay(const std::string& reason)
     {
         _warnings.push_back("skeleton \"" + _skeleton.getName() + "\": " + reason + "; it stays as it is");
@@ -132,7 +143,7 @@ private:
     std::vector<std::string>& _warnings;
     std::vector<BoneJoint> _bones;
     std::vector<RigMesh> _meshes;
-    std::set<std::string> _targets;
+    std::set<std::string> _channels;
 };
 
 /// False, with a warning, if the skeleton has to stay.
@@ -176,9 +187,9 @@ void SkeletonConverter::addClips(const std::vector<Manager>& managers, Animation
             for (std::size_t i = 0; i < _bones.size(); ++i)
             {
                 BoneMotion motion(*_bones[i].bone, _bones[i].update, animation);
-                if (!motion.isMoving()) continue;
+                if (motion.driving().empty()) continue;
                 isMoving = true;
-                _targets.insert(_bones[i].update->getName());
+                take(motion.driving());
                 for (Channel& channel : motion.channels(parts.skeleton.jointOfInput(i)))
                     if (const Result<void> added = builder.add(std::move(channel)); !added)
                         _warnings.push_back("animation \"" + animation->getName() + "\", bone \"" +
@@ -200,9 +211,9 @@ bool SkeletonConverter::addWeights(const osgAnimation::Animation& animation, con
         if (!mesh.morph) continue;
         const int target = morph++;
         MorphMotion motion(parts.morphs[static_cast<std::size_t>(target)].defaults, mesh.weights, animation);
-        if (!motion.isMoving()) continue;
+        if (motion.driving().empty()) continue;
         isMoving = true;
-        _targets.insert(mesh.weights->getTargetNames().begin(), mesh.weights->getTargetNames().end());
+        take(motion.driving());
         if (const Result<void> added = builder.add(motion.channel(target)); !added)
             _warnings.push_back("animation \"" + animation.getName() + "\", mesh \"" + mesh.geometry->getName() +
                                 "\": " + added.error().message);
@@ -295,7 +306,7 @@ Conversion convertOsgAnimation(osg::Node& node)
         SkeletonConverter converter(*skeleton, result.warnings);
         const osg::ref_ptr<AnimatedCharacter> character = converter.character(scene.managers);
         if (!character) continue;
-        taken.insert(converter.targets().begin(), converter.targets().end());
+        taken.insert(converter.channels().begin(), converter.channels().end());
         const std::vector<osg::Group*> parents = skeleton->getParents();
         for (osg::Group* parent : parents)
             parent->replaceChild(skeleton, character);
@@ -307,10 +318,10 @@ Conversion convertOsgAnimation(osg::Node& node)
         result.warnings.push_back("MorphGeometry that no bone carries stays as it is");
     for (const Manager& each : scene.managers)
     {
-        std::set<std::string> left; // targets of channels that no clip has
+        std::set<std::string> left; // channels that no clip has
         for (const osg::ref_ptr<osgAnimation::Animation>& animation : each.manager->getAnimationList())
             for (const osg::ref_ptr<osgAnimation::Channel>& channel : animation->getChannels())
-                if (taken.count(channel->getTargetName()) == 0) left.insert(channel->getTargetName());
+                if (taken.count(nameOf(*channel)) == 0) left.insert(nameOf(*channel));
         if (left.empty()) each.owner->removeUpdateCallback(each.manager);
         if (left.empty() || result.characters.empty()) continue;
         result.warnings.push_back("the animation manager stays, for channels that move no bone: " +

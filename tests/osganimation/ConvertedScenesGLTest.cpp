@@ -302,6 +302,11 @@ TEST_F(ConvertedScenesGLTest, whatCannotBeTurnedStaysOrIsAttached)
     other->setTargetName("door");
     other->getOrCreateSampler()->getOrCreateKeyframeContainer()->push_back(osgAnimation::Vec3Keyframe(0.0, {}));
     scene.manager->getAnimationList().front()->addChannel(other);
+    osg::ref_ptr<osgAnimation::Vec4LinearChannel> color = new osgAnimation::Vec4LinearChannel; // of a bone's namesake
+    color->setTargetName("lower");
+    color->setName("diffuse");
+    color->getOrCreateSampler()->getOrCreateKeyframeContainer()->push_back(osgAnimation::Vec4Keyframe(0.0, {}));
+    scene.manager->getAnimationList().front()->addChannel(color);
     osg::ref_ptr<osgAnimation::Skeleton> empty = new osgAnimation::Skeleton;
     empty->setName("empty");
     scene.root->addChild(empty);
@@ -309,7 +314,8 @@ TEST_F(ConvertedScenesGLTest, whatCannotBeTurnedStaysOrIsAttached)
     ASSERT_EQ(converted.characters.size(), 1u);
     EXPECT_EQ(converted.warnings,
               (std::vector<std::string>{"skeleton \"empty\": it has no bones; it stays as it is",
-                                        "the animation manager stays, for channels that move no bone: \"door\""}));
+                                        "the animation manager stays, for channels that move no bone: \"door\", "
+                                        "\"lower.diffuse\""}));
     ASSERT_EQ(lamp->getNumParents(), 2u); // of the bone, and the attachment
     const auto* const attachment = dynamic_cast<const JointAttachment*>(lamp->getParent(1));
     ASSERT_TRUE(attachment);

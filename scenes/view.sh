@@ -39,7 +39,7 @@ if [ -n "${DISPLAY:-}" ]; then
 fi
 drawn=$model
 [[ "$file" == "$model.gpuanim"* ]] && drawn=$model.gpuanim
-[[ "$file" =~ ^(.*\.[0-9]+[xX][0-9]+\.crowd)(\..*)?$ ]] && drawn=${BASH_REMATCH[1]}
+[[ "$file" =~ ^(.*\.crowd)(\..*)?$ ]] && drawn=${BASH_REMATCH[1]}
 picture=$build/$(basename "${model%.*}${drawn#"$model"}").png  # Wanderer.png, Wanderer.5x5.crowd.png
 "$build/bin/osggpuanim" render "$drawn" --time 0.5 -o "$picture"
 left_out=${file#"$drawn"}

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "Subject.h"
 
+#include "gltf/file/ModelBytes.h"
+
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 namespace osgGpuAnimation::benchmark
 {
@@ -26,13 +26,13 @@ std::size_t drivenJoints(const AnimationSet& set, const Clip& clip)
 
 Result<Subject> loadSubject(const std::string& fileName, bool fixedLighting, double compact)
 {
-    std::ifstream stream(fileName, std::ios::binary);
-    const std::string bytes(std::istreambuf_iterator<char>(stream), {});
     gltf::ImportOptions options;
     options.fixedLighting = fixedLighting;
     options.noKeys = true;
     if (compact > 0.0) options.compact = compact;
-    Result<gltf::ImportedModel> model = gltf::importModel(bytes, fileName, options);
+    const Result<std::string> bytes = gltf::readModelFile(fileName, options);
+    if (!bytes) return bytes.error();
+    Result<gltf::ImportedModel> model = gltf::importModel(bytes.value(), fileName, options);
     if (!model) return model.error();
     Subject subject{std::filesystem::path(fileName).stem().string(), fileName, std::move(model).value(), 0};
     if (!subject.model.set || subject.set().clips().empty()) return Error{"nothing moves"};

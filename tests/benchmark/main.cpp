@@ -8,8 +8,10 @@
 
 #include <malloc.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iostream>
+#include <iterator>
 #include <map>
 #include <set>
 #include <thread>
@@ -41,6 +43,22 @@ struct Request
     bool has(const std::string& part) const { return parts.empty() || parts.count(part) != 0; }
 };
 
+constexpr std::pair<const char*, void (*)(const Subject&, Run&)> parts[] = {
+    {"samples", measureSamples},   {"constraints", measureConstraints},
+    {"chunks", measureChunks},     {"compact", measureCompact},
+    {"pose", measurePose},         {"frames", measureFrames},
+    {"crowd", measureCrowd},       {"outfits", measureOutfits},
+    {"separate", measureSeparate}, {"field", measureField},
+    {"draws", measureDraws},       {"pictures", measurePictures},
+    {"shading", measureShading},   {"start", measureStart},
+    {"memory", measureMemory},     {"load", measureLoad}};
+
+bool isPart(const std::string& name)
+{
+    return name == "gpu" ||
+           std::any_of(std::begin(parts), std::end(parts), [&](const auto& part) { return name == part.first; });
+}
+
 bool parse(int count, char** words, Request& request)
 {
     osg::ArgumentParser parser(&count, words);
@@ -49,6 +67,7 @@ bool parse(int count, char** words, Request& request)
     for (std::string part; parser.read("--only", part);)
         request.parts.insert(part);
     if (parser.containsOptions() || parser.argc() < 3) return false;
+    if (!std::all_of(request.parts.begin(), request.parts.end(), isPart)) return false;
     request.folder = parser[1];
     request.files.assign(words + 2, words + parser.argc());
     return true;
@@ -95,16 +114,6 @@ std::map<std::string, std::string> describeMachine()
     machine["times"] = "CPU time of the process on all cores, unless they say wall";
     return machine;
 }
-
-constexpr std::pair<const char*, void (*)(const Subject&, Run&)> parts[] = {
-    {"samples", measureSamples},   {"constraints", measureConstraints},
-    {"chunks", measureChunks},     {"compact", measureCompact},
-    {"pose", measurePose},         {"frames", measureFrames},
-    {"crowd", measureCrowd},       {"outfits", measureOutfits},
-    {"separate", measureSeparate}, {"field", measureField},
-    {"draws", measureDraws},       {"pictures", measurePictures},
-    {"shading", measureShading},   {"start", measureStart},
-    {"memory", measureMemory},     {"load", measureLoad}};
 
 void measureAll(const Request& request, Run& run)
 {

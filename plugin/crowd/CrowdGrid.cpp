@@ -139,7 +139,7 @@ osg::Vec4 colorOf(float hue, float saturation, float value)
 }
 
 /// Outfits for the option `outfits=random`. Rigid parts on one joint exclude each other: an outfit shows one of them or
-/// none. If the crowd has several materials, each gets a pale colour of a random hue, but those whose names speak of
+/// none. If the crowd has several materials, each gets a tint of a random hue, but those whose names speak of
 /// skin, faces, eyes or hair.
 std::vector<OutfitShare> randomOutfits(const AnimatedCrowd& crowd, std::uint32_t seed)
 {

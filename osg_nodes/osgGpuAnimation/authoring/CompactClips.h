@@ -2,7 +2,6 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
-#include <osgGpuAnimation/math/Box.h>
 #include <osgGpuAnimation/math/Result.h>
 
 #include <memory>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/data/AnimationPointers.h"
 
+#include "gltf/document/ReadModel.h"
 #include "gltf/file/Elements.h"
 
 #include <algorithm>

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "gltf/document/JsonTree.h"
-#include "gltf/document/ReadModel.h"
 #include "gltf/file/Report.h"
 
 #include <osgGpuAnimation/animation/Skeleton.h>

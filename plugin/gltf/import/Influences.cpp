@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/import/Influences.h"
 
-#include "gltf/data/Accessor.h"
 #include "gltf/data/VertexAttributes.h"
 
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>

@@ -145,12 +145,6 @@ void visitArrays(MeshPrimitive& mesh, const Visitor& visit)
     }
 }
 
-/// Takes the vertices mesh.sourceVertex.
-void pickVertices(MeshPrimitive& mesh)
-{
-    visitArrays(mesh, [&](auto& array) { pick(array, mesh.sourceVertex); });
-}
-
 /// Welds vertices whose attributes are all equal: those that the mesh has read and the file's influences.
 WeldedVertices weld(const tinygltf::Model& model, const tinygltf::Primitive& primitive, MeshPrimitive& mesh)
 {
@@ -192,7 +186,7 @@ void makeSmooth(MeshPrimitive& mesh, const tinygltf::Model& model, const tinyglt
     for (std::size_t vertex = mesh.vertexCount; vertex-- > 0;)
         mesh.sourceVertex[welded.vertexOf[vertex]] = static_cast<std::uint32_t>(vertex);
     mesh.geometryVertex = std::make_shared<std::vector<std::uint32_t>>(std::move(welded.vertexOf));
-    pickVertices(mesh);
+    visitArrays(mesh, [&](auto& array) { pick(array, mesh.sourceVertex); });
     if (!isBlended) optimizeForVertexCache(corners, welded.count);
     mesh.primitiveSet = makePrimitiveSet(modeTriangles, corners, welded.count);
     mesh.normals = smoothNormals(*mesh.positions, corners);
@@ -211,7 +205,7 @@ void makeFlat(MeshPrimitive& mesh, int mode, std::vector<std::uint32_t> indices)
     {
         mesh.sourceVertex = std::move(corners);
         mesh.geometryVertex = std::make_shared<std::vector<std::uint32_t>>(invert(mesh.sourceVertex, mesh.vertexCount));
-        pickVertices(mesh);
+        visitArrays(mesh, [&](auto& array) { pick(array, mesh.sourceVertex); });
     }
     mesh.normals = flatNormals(*mesh.positions);
     mesh.isFlat = true;

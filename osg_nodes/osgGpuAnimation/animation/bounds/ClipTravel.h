@@ -27,10 +27,8 @@ public:
     ClipTravel(const AnimationSet& set, std::size_t clip, const EntryBoxes& entryBoxes,
                const std::vector<float>& reaches);
 
-    float length() const
-    {
-        return _samples.empty() ? 0.0f : _samples.back().piece.travel;
-    } ///< of the whole clip, in model units
+    /// Of the whole clip, in model units.
+    float length() const { return _samples.empty() ? 0.0f : _samples.back().piece.travel; }
     /// The travel at a time in seconds, in [0, length()].
     float at(float time) const
     {

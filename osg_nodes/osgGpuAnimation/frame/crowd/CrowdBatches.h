@@ -5,7 +5,6 @@
 #include <osgGpuAnimation/frame/crowd/OutfitLists.h>
 #include <osgGpuAnimation/frame/stage/LodSelection.h>
 #include <osgGpuAnimation/frame/stage/PoseFrame.h>
-#include <osgGpuAnimation/mesh/draw/PaletteBinding.h>
 #include <osgGpuAnimation/mesh/geometry/PosedMesh.h>
 
 #include <cstddef>

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationController.h>
-#include <osgGpuAnimation/animation/bounds/ClipBounds.h>
 #include <osgGpuAnimation/animation/bounds/MixBounds.h>
 #include <osgGpuAnimation/animation/playback/PendingEvents.h>
 #include <osgGpuAnimation/animation/StateMachine.h>

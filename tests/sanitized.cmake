@@ -10,10 +10,9 @@ if(OSGGPUANIMATION_SANITIZER STREQUAL address)
          plugin/CloningGLTest.cpp serializers/SerializersGLTest.cpp)
 endif()
 add_executable(sanitized_tests EXCLUDE_FROM_ALL ${sanitized_sources} $<TARGET_OBJECTS:test_support>)
-set(OSGGPUANIMATION_UNITY ON) # for this program in any case: its files are the other programs' too
 # Those with names like others have stay apart.
 list(FILTER sanitized_sources INCLUDE REGEX "GLTest|GlCallTrace")
-osggpuanimation_unity(sanitized_tests ${sanitized_sources})
+set_source_files_properties(${sanitized_sources} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 target_link_libraries(sanitized_tests PRIVATE osgGpuAnimation_build osgGpuAnimation_gltf TinyGLTF::TinyGLTF
                       nlohmann_json::nlohmann_json ${OSGSHADOW_LIBRARIES} GTest::gtest GTest::gtest_main)
 set_target_properties(sanitized_tests PROPERTIES ENABLE_EXPORTS ON) # for GlCallTrace

@@ -191,7 +191,7 @@ TEST(PoseTest, nothingIsReadBehindTheLastKeyframe)
         EXPECT_LE(glm::length(tracks[j].translation - clip.data()[last + j].translation), 1e-6f);
 }
 
-constexpr float none = std::numeric_limits<float>::quiet_NaN();
+constexpr float notANumber = std::numeric_limits<float>::quiet_NaN();
 constexpr float infinite = std::numeric_limits<float>::infinity();
 
 std::vector<AffineMatrix> jointsOf(const AnimationController& controller)
@@ -242,7 +242,7 @@ TEST(JointPoseTest, refusesBadInputAndKeepsThePose)
     std::vector<AffineMatrix> flat(joints), longer(joints + 1);
     flat[0].rows[1] = glm::vec4(0.0f);
     JointTransform noWeight;
-    noWeight.translation.x = none;
+    noWeight.translation.x = notANumber;
     JointPose pose(set);
     ASSERT_TRUE(pose.setRotation(1, glm::quat(1, 1, 0, 0)));
     ASSERT_TRUE(pose.setMorphWeight(0, 0, 0.25f));
@@ -256,14 +256,14 @@ TEST(JointPoseTest, refusesBadInputAndKeepsThePose)
         {"no such morph", pose.setMorphWeight(2, 0, 0.5f)},
         {"no such morph: reset", pose.resetMorph(2)},
         {"no such target", pose.setMorphWeight(0, 5, 0.5f)},
-        {"NaN translation", pose.setTranslation(1, {0, none, 0})},
+        {"NaN translation", pose.setTranslation(1, {0, notANumber, 0})},
         {"infinite translation", pose.setTranslation(1, {0, 0, -infinite})},
         {"too large a translation", pose.setTranslation(1, {2e18f, 0, 0})},
-        {"NaN rotation", pose.setRotation(1, glm::quat(1, 0, none, 0))},
+        {"NaN rotation", pose.setRotation(1, glm::quat(1, 0, notANumber, 0))},
         {"infinite rotation", pose.setRotation(1, glm::quat(infinite, 0, 0, 0))},
         {"zero rotation", pose.setRotation(1, glm::quat(0, 0, 0, 0))},
-        {"NaN scale", pose.setScale(1, {1, none, 1})},
-        {"NaN weight", pose.setMorphWeight(0, 0, none)},
+        {"NaN scale", pose.setScale(1, {1, notANumber, 1})},
+        {"NaN weight", pose.setMorphWeight(0, 0, notANumber)},
         {"infinite weight", pose.setMorphWeight(0, 0, infinite)},
         {"a zero rotation in the array", bool(pose.setTransforms(withNone))},
         {"too short an array", bool(pose.setTransforms(fewer))},
@@ -293,7 +293,7 @@ TEST(JointPoseTest, aStreamThatHasSettledRefusesBadNumbers)
     ASSERT_TRUE(pose.setTransforms(good));
     const std::uint64_t serial = pose.keyframe().serial();
     for (const std::size_t number : {0, 1, 2, 4, 5, 6, 7, 8, 9, 10})
-        for (const float bad : {none, infinite})
+        for (const float bad : {notANumber, infinite})
         {
             std::vector<JointTransform> transforms = good;
             transforms[1].number(number) = bad;
@@ -302,7 +302,7 @@ TEST(JointPoseTest, aStreamThatHasSettledRefusesBadNumbers)
         }
     // The fourth numbers mean nothing and are stored as 0.
     std::vector<JointTransform> marked = good;
-    marked[1].translation.w = marked[1].scale.w = none;
+    marked[1].translation.w = marked[1].scale.w = notANumber;
     ASSERT_TRUE(pose.setTransforms(marked));
     EXPECT_EQ(pose.keyframe().values(1).translation, glm::vec4(0.0f));
     EXPECT_EQ(pose.keyframe().setNumbers(1), 0xFFFu);

@@ -255,7 +255,7 @@ struct Leg
     }
 };
 
-const float half = std::sqrt(0.5f);
+const float rootOfHalf = std::sqrt(0.5f);
 
 TEST(RetargetTest, theHipsMoveByTheRatioOfTheLegs)
 {
@@ -269,7 +269,7 @@ TEST(RetargetTest, theHipsMoveByTheRatioOfTheLegs)
         {"the same legs", {}, 1.0},
         {"twice the legs", {1.0f, 2.0f, 2.0f}, 2.0},
         {"in centimetres", {0.01f, 1.0f, 1.0f}, 1.0},
-        {"lying in its file", {1.0f, 0.5f, 0.5f, {-half, 0, 0, half}}, 0.5},
+        {"lying in its file", {1.0f, 0.5f, 0.5f, {-rootOfHalf, 0, 0, rootOfHalf}}, 0.5},
     };
     const SetPointer clips =
         makeSet(Leg().joints(), {{{Channel::Path::Translation,
@@ -352,7 +352,7 @@ TEST(RetargetTest, otherTranslationsAreTheSetsAndFactorsOfTheScaleAreKept)
     from[2].rest.translation = glm::vec4(0, -1, 0, 0);
     std::vector<Joint> to = from;
     to[1].rest.translation = glm::vec4(0, 2, 0, 0);
-    to[1].rest.rotation = glm::vec4(0, 0, half, half); // its x axis is y, and its y axis is -x
+    to[1].rest.rotation = glm::vec4(0, 0, rootOfHalf, rootOfHalf); // its x axis is y, and its y axis is -x
     to[1].rest.scale = glm::vec4(3, 3, 3, 0);
     const auto channel = [](Channel::Path path, int joint) {
         return Channel{path, Interpolation::Linear, joint, {0.0, 1.0}, {0, 1, 0, 2, 5, 1}};

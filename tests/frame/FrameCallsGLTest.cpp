@@ -230,7 +230,7 @@ private:
 };
 
 /// Characters beside each other, with a texture and state sets of their own and above.
-osg::ref_ptr<osg::Node> makeCharacters(int count)
+osg::ref_ptr<osg::Node> makeRow(int count)
 {
     const osg::ref_ptr<AnimatedCharacter> first = makeTestCharacter();
     auto& mesh = dynamic_cast<SkinnedGeometry&>(*first->getChild(0));
@@ -259,7 +259,7 @@ TEST_F(FirstDrawGLTest, theFirstFrameAfterACompileTraversalCompilesNothing)
         for (const bool isAtOnce : {true, false})
         {
             SCOPED_TRACE(testing::Message() << characters << (isAtOnce ? ", by GLObjectsVisitor" : ", incremental"));
-            beginAgain().addChild(makeCharacters(characters));
+            beginAgain().addChild(makeRow(characters));
             osg::ref_ptr<osg::Image> expected;
             {
                 const GlCallTrace trace(state());
@@ -269,7 +269,7 @@ TEST_F(FirstDrawGLTest, theFirstFrameAfterACompileTraversalCompilesNothing)
             }
             EXPECT_GT(picture().pixelsDrawn(), 50);
             osg::Group& root = beginAgain();
-            const osg::ref_ptr<osg::Node> scene = makeCharacters(characters);
+            const osg::ref_ptr<osg::Node> scene = makeRow(characters);
             isAtOnce ? compileAtOnce(*scene) : compileByAndBy(*scene);
             root.addChild(scene);
             const GlCallTrace trace(state());
@@ -285,7 +285,7 @@ TEST_F(FirstDrawGLTest, theFirstFrameAfterACompileTraversalCompilesNothing)
 TEST_F(FirstDrawGLTest, aCompileTraversalBetweenFramesChangesNoPicture)
 {
     osg::Group& root = beginAgain();
-    root.addChild(makeCharacters(3));
+    root.addChild(makeRow(3));
     root.addChild(osg::createTexturedQuadGeometry({-3, 0, -3}, {1, 0, 0}, {0, 0, 1}));
     drawAt(0.5);
     drawAt(0.5);

@@ -51,7 +51,7 @@ bool mentions(const std::string& text, const std::string& part)
 }
 
 /// One more channel of the clip "bad", and its warning; empty: the clip stays.
-struct Fault
+struct ClipFault
 {
     const char* name;
     int node;
@@ -61,7 +61,7 @@ struct Fault
     const char* warning;
 };
 
-const Fault faults[] = {
+const ClipFault clipFaults[] = {
     {"channel without node", -1, "translation", {0, 1}, {0, 0, 0, 1, 0, 0}, ""},
     {"values missing", 0, "scale", {0, 1}, {0, 0, 0}, "animations[1] \"bad\".channels[1]"},
     {"rotation of length 0", 0, "rotation", {0, 1}, {0, 0, 0, 0, 0, 0, 0, 1}, "animations[1] \"bad\".channels[1]"},
@@ -86,7 +86,7 @@ const std::vector<ClipMarker>& markersOf(const ImportedModel& model)
 
 TEST(ClipsTest, oneFaultCostsAtMostOneClip)
 {
-    for (const Fault& fault : faults)
+    for (const ClipFault& fault : clipFaults)
     {
         SCOPED_TRACE(fault.name);
         ModelBuilder file = slidingArm();
@@ -350,7 +350,7 @@ TEST(MarkersTest, aFaultCostsTheMarkerWithAWarning)
 namespace
 {
 
-ImportedModel load(const std::string& path, const ImportOptions& options)
+ImportedModel loadModel(const std::string& path, const ImportOptions& options)
 {
     return imported(readBytes(path), options, path);
 }
@@ -406,7 +406,7 @@ TEST(ClipFilesTest, nodesOfTheModelMoveWhoseNamesTheClipsHave)
     folder.write("More.gltf", bodyClips({"Run", "", "Jump", "Take 002"}).text());
     folder.write("Walk.gltf", bodyClips({"Take 001"}).text());
     const std::string path = folder.write("body.gltf", bodyModel().text());
-    const ImportedModel model = load(path, withClips({"Run.gltf", "More.gltf", "Walk.gltf"}));
+    const ImportedModel model = loadModel(path, withClips({"Run.gltf", "More.gltf", "Walk.gltf"}));
     expectWarnings(model, {});
     // Names that exporters write for a nameless clip are replaced by the file's name.
     EXPECT_EQ(clipNamesOf(model), (std::vector<std::string>{"Run", "Run 2", "More", "Jump", "Take 002", "Walk"}));
@@ -431,7 +431,8 @@ TEST(ClipFilesTest, aGenericNameIsReplacedByThatOfTheModelsOwnFileToo)
     {
         ModelBuilder file = bodyModel();
         file.slidingClip(name, 0);
-        EXPECT_EQ(clipNamesOf(load(folder.write("Dance.gltf", file.text()), {})), std::vector<std::string>{expected});
+        EXPECT_EQ(clipNamesOf(loadModel(folder.write("Dance.gltf", file.text()), {})),
+                  std::vector<std::string>{expected});
     }
     ModelBuilder file = bodyModel();
     file.slidingClip("mixamo.com", 0);
@@ -458,7 +459,7 @@ TEST(ClipFilesTest, clipMatchSaysHowClipsOfAnotherRestPoseFitAndIsNoted)
     {
         ImportOptions options = withClips({"nod.gltf"});
         options.clipMatch = match;
-        const ImportedModel loaded = load(path, options);
+        const ImportedModel loaded = loadModel(path, options);
         expectWarnings(loaded, {});
         std::vector<JointTransform> tracks(loaded.set->trackCount());
         Pose::mix(*loaded.set, instructionAt(*loaded.set, 0, 0.0), tracks);
@@ -489,7 +490,7 @@ TEST(ClipFilesTest, clipsAreChosenByTheFilesNumber)
         ImportOptions options = withClips({"more.gltf"});
         options.clip = wish;
         options.speed = -2.0;
-        const ImportedModel model = load(path, options);
+        const ImportedModel model = loadModel(path, options);
         EXPECT_EQ(model.animationOfClip, std::vector<int>({1, 2, 3, 4}));
         const AnimationController& controller = model.character->getController();
         EXPECT_EQ(controller.set().clips()[static_cast<std::size_t>(controller.clip())].name(), expected) << wish;
@@ -537,13 +538,13 @@ TEST(ClipFilesTest, aFaultyFileCostsItsClipsAloneAndIsNamed)
     for (const Case& one : cases)
     {
         SCOPED_TRACE(one.name);
-        const ImportedModel loaded = load(path, withClips(one.files));
+        const ImportedModel loaded = loadModel(path, withClips(one.files));
         expectWarnings(loaded, {one.warning});
         EXPECT_EQ(loaded.set->clips().size(), one.clips);
     }
     ImportOptions anywhere = withClips({far});
     anywhere.allowOutsideClips = true;
-    EXPECT_EQ(clipNamesOf(load(path, anywhere)), (std::vector<std::string>{"Idle", "Far"}));
+    EXPECT_EQ(clipNamesOf(loadModel(path, anywhere)), (std::vector<std::string>{"Idle", "Far"}));
     expectWarnings(imported(model, withClips({"good.gltf"})), {"clips \"good.gltf\""});
 }
 
@@ -586,7 +587,7 @@ TEST(ClipFilesTest, aFileNamesTheCounterpartsOfJoints)
         folder.write("names.json", one.names);
         ImportOptions options = withClips({"nod.gltf", "run.gltf"});
         options.clipJoints = "names.json";
-        const ImportedModel model = load(path, options);
+        const ImportedModel model = loadModel(path, options);
         expectWarnings(model, one.warnings);
         const int clip = model.set->findClip("Nod");
         ASSERT_EQ(clip >= 0, one.head >= 0.0f);
@@ -597,9 +598,9 @@ TEST(ClipFilesTest, aFileNamesTheCounterpartsOfJoints)
     const ScratchFolder outside;
     ImportOptions options = withClips({"run.gltf"});
     options.clipJoints = outside.write("far.json", "{}");
-    expectWarnings(load(path, options), {"allowOutsideFiles"});
+    expectWarnings(loadModel(path, options), {"allowOutsideFiles"});
     options.clipJoints = "none.json";
-    expectWarnings(load(path, options), {"the file does not exist"});
+    expectWarnings(loadModel(path, options), {"the file does not exist"});
 }
 
 TEST(ClipFilesTest, keyframesAreLimited)
@@ -608,7 +609,7 @@ TEST(ClipFilesTest, keyframesAreLimited)
     folder.write("run.gltf", bodyClips({"Run"}).text());
     ImportOptions options = withClips({"run.gltf"});
     options.maxDecodedBytes = 300;
-    expectWarnings(load(folder.write("body.gltf", bodyModel().text()), options), {"maxDecodedBytes", "meshes[1]"});
+    expectWarnings(loadModel(folder.write("body.gltf", bodyModel().text()), options), {"maxDecodedBytes", "meshes[1]"});
 }
 
 TEST(ClipFilesTest, osgDbTakesTheOptionSeveralTimesAndNamesWithSpacesForCrowdsToo)

@@ -2,6 +2,7 @@
 #include "gltf/data/Picture.h"
 #include "gltf/export/PictureWriter.h"
 #include "serializers/RoundTrip.h"
+#include "support/StateModes.h"
 
 #include <osgGpuAnimation/looks/PbrMaterial.h>
 
@@ -129,8 +130,6 @@ struct LookCase
     SetUp setUp;
     const char* expected; ///< changes of the material of a state without anything
 };
-
-constexpr auto on = osg::StateAttribute::ON, off = osg::StateAttribute::OFF;
 
 /// IEC 61966-2-1: 0.5 as displayed is 0.2140411 in linear light, 0.2 is 0.0331048.
 const LookCase looks[] = {

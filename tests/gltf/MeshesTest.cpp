@@ -154,7 +154,7 @@ void mapVariant(Primitive& primitive)
 const Groups together{{0, 1, 2}}, secondApart{{0, 2}, {1}}, allApart{{0}, {1}, {2}};
 
 /// Changes the second primitive, or the file.
-struct Change
+struct MeshChange
 {
     const char* name;
     void (*change)(ThreePrimitives& file, Primitive& second);
@@ -163,7 +163,7 @@ struct Change
 
 using File = ThreePrimitives;
 
-const Change changes[] = {
+const MeshChange meshChanges[] = {
     {"only the indices differ", [](File&, Primitive&) {}, together},
     {"no indices", [](File&, Primitive& second) { second.indices = -1; }, together},
     {"attributes", [](File&, Primitive& second) { second.attributes["NORMAL"] = 1; }, secondApart},
@@ -499,7 +499,7 @@ TEST(MeshesTest, trianglesAreReorderedForTheVertexCache)
 
 TEST(PrimitivesTogetherTest, theyHaveTheSameVerticesAndMaterials)
 {
-    for (const Change& each : changes)
+    for (const MeshChange& each : meshChanges)
     {
         SCOPED_TRACE(each.name);
         ThreePrimitives file;

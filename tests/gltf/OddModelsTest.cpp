@@ -387,19 +387,18 @@ std::string extras(std::size_t values)
     return documentOf(R"("nodes":[{"extras":{"all":[)" + list("0", values) + "]}}]");
 }
 
-struct Case
-{
-    const char* name;
-    std::string text;
-    const char* message = ""; ///< part of the error; empty: the model is drawn
-    std::size_t ImportOptions::*limit = nullptr;
-    std::size_t value = 0; ///< of the limit
-};
-
 } // namespace
 
 TEST(ManyElementsTest, staySmallAndQuick)
 {
+    struct Case
+    {
+        const char* name;
+        std::string text;
+        const char* message = ""; ///< part of the error; empty: the model is drawn
+        std::size_t ImportOptions::*limit = nullptr;
+        std::size_t value = 0; ///< of the limit
+    };
     const auto maxDocument = &ImportOptions::maxDocumentBytes;
     const Case cases[] = {
         {"static", manyNodes(Kind::Static)},

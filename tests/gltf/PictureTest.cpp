@@ -122,7 +122,7 @@ std::string manyScans()
 
 const char* const withoutWebp = "a WebP (EXT_texture_webp) needs libwebp, without which this osgGpuAnimation was built";
 
-struct Fault
+struct PictureFault
 {
     const char* name;
     std::string bytes;
@@ -159,7 +159,7 @@ TEST(PictureTest, refusesBombsAndDamage)
 {
     const std::string good = encodedPicture("png", 2, 2);
     const std::uint32_t largest = PictureHeader::maxPixelsPerSide;
-    const Fault faults[] = {
+    const PictureFault faults[] = {
         {"nothing", "", "expected a PNG, JPEG or WebP, found other data"},
         {"text", "this is no picture at all", "expected a PNG, JPEG or WebP, found other data"},
         {"KTX2", "\xabKTX 20\xbb\r\n\x1a\n and more", "expected a PNG, JPEG or WebP, found KTX2"},
@@ -196,7 +196,7 @@ TEST(PictureTest, refusesBombsAndDamage)
         {"a lossless WebP of too little data", losslessWebp(16383, 16383, 20),
          "expected data for a picture of 16383 x 16383, found far too little"},
     };
-    for (const Fault& fault : faults)
+    for (const PictureFault& fault : faults)
     {
         SCOPED_TRACE(fault.name);
         const bool isRead = OSGGPUANIMATION_WITH_WEBP || std::strstr(fault.name, "WebP") == nullptr;

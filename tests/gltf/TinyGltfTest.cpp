@@ -25,7 +25,7 @@ namespace
 using Json = nlohmann::json;
 
 /// The base model with a change of its data, and the loader's answer.
-struct Change
+struct ModelChange
 {
     std::string name;
     std::function<void(ModelBuilder&)> change;
@@ -50,7 +50,7 @@ std::function<void(ModelBuilder&)> withLargeIndex(int componentType, unsigned in
     };
 }
 
-const Change changes[] = {
+const ModelChange modelChanges[] = {
     {"weights of two sets that sum to 1 together",
      [](ModelBuilder& file)
      {
@@ -102,7 +102,7 @@ std::vector<float> attributeOf(const LoadedDocument& answer, const char* name)
 
 TEST(TinyGltfTest, answersEachChangeOfTheData)
 {
-    for (const Change& change : changes)
+    for (const ModelChange& change : modelChanges)
     {
         SCOPED_TRACE(change.name);
         ModelBuilder file = baseModel();

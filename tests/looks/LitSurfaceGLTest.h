@@ -12,6 +12,10 @@
 namespace osgGpuAnimation
 {
 
+// Edge pixels, and the lighting: per vertex in the fixed pipeline, per pixel here.
+constexpr int edgePixels = 40;
+constexpr float tolerance = 0.03f;
+
 /// Sets a uniform of the character's program to true.
 inline void setUniform(osg::Geometry& mesh, const char* name)
 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "looks/Panel.h"
 #include "support/NotifyLog.h"
+#include "support/StateModes.h"
 #include "support/TestCrowd.h"
 #include "support/ViewerGLTest.h"
 
@@ -205,9 +206,6 @@ TEST_F(ProfileGLTest, withoutFeedbackAndInstancingAllElseIsDrawnAndOneMessageSay
     EXPECT_NE(message, std::string::npos) << log->text;
     EXPECT_EQ(log->text.find(expectedText, message + 1), std::string::npos) << log->text;
 }
-
-constexpr auto on = osg::StateAttribute::ON, off = osg::StateAttribute::OFF, inherit = osg::StateAttribute::INHERIT;
-constexpr auto override = osg::StateAttribute::OVERRIDE, protect = osg::StateAttribute::PROTECTED;
 
 /// A mode's values in the state sets from the root to the mesh.
 struct ModeCase

@@ -2,6 +2,7 @@
 #include "frame/GlCallTrace.h"
 #include "looks/Panel.h"
 #include "support/NotifyLog.h"
+#include "support/StateModes.h"
 #include "support/TestCrowd.h"
 #include "support/ViewerGLTest.h"
 
@@ -124,9 +125,7 @@ public:
     osg::Program& program() { return *_program; }
 };
 
-constexpr auto on = osg::StateAttribute::ON;
-constexpr auto override = osg::StateAttribute::ON | osg::StateAttribute::OVERRIDE;
-constexpr auto protect = osg::StateAttribute::ON | osg::StateAttribute::PROTECTED;
+constexpr auto onOverride = on | override, onProtected = on | protect;
 
 /// What the host sets above everything, besides its plain program for its own meshes.
 enum class Kind
@@ -145,14 +144,14 @@ struct Way
 
 const Way ways[] = {
     {"PlainOn", Kind::Plain, on},
-    {"PlainOverride", Kind::Plain, override},
-    {"PlainProtected", Kind::Plain, protect},
+    {"PlainOverride", Kind::Plain, onOverride},
+    {"PlainProtected", Kind::Plain, onProtected},
     {"SkinningOn", Kind::Skinning, on},
-    {"SkinningOverride", Kind::Skinning, override},
-    {"SkinningProtected", Kind::Skinning, protect},
+    {"SkinningOverride", Kind::Skinning, onOverride},
+    {"SkinningProtected", Kind::Skinning, onProtected},
     {"HooksOn", Kind::Hooks, on},
-    {"HooksOverride", Kind::Hooks, override},
-    {"HooksProtected", Kind::Hooks, protect},
+    {"HooksOverride", Kind::Hooks, onOverride},
+    {"HooksProtected", Kind::Hooks, onProtected},
 };
 
 enum class Subject
@@ -297,7 +296,7 @@ protected:
     static bool hasHostsLook(Subject subject, const Way& way)
     {
         if (way.kind == Kind::Hooks) return true;
-        return way.value == override && (way.kind == Kind::Skinning || subject == Subject::Still);
+        return way.value == onOverride && (way.kind == Kind::Skinning || subject == Subject::Still);
     }
 
     /// As with the host's plain program, in the same pose.
@@ -305,7 +304,7 @@ protected:
     {
         const osg::ref_ptr<osg::Group> scene = makeHostScene(makeSubject(Subject::Crowd), nullptr);
         osg::StateSet& above = *scene->getOrCreateStateSet();
-        above.setAttribute(new TestedProgram(true), override);
+        above.setAttribute(new TestedProgram(true), onOverride);
         above.setDefine("POSE_SKINNING_PROGRAM");
         const Way plain{"", Kind::Plain, on};
         const osg::ref_ptr<osg::Image> expected = pictureOf(makeHostScene(makeBakedSubject(Subject::Crowd), &plain));
@@ -451,25 +450,25 @@ struct AboveCase
 // Among programs that skin, OSG's rule of OVERRIDE and PROTECTED counts; the others count for the host's own meshes.
 TEST_F(HostGLTest, theProgramsAboveReplaceTheKitsByOsgsRuleIfTheySkin)
 {
-    constexpr osg::StateAttribute::OverrideValue both = override | protect;
+    constexpr osg::StateAttribute::OverrideValue both = onOverride | onProtected;
     const AboveCase cases[] = {
         {{{true, on}}, -1},
-        {{{true, protect}}, -1},
-        {{{true, override}}, 0},
+        {{{true, onProtected}}, -1},
+        {{{true, onOverride}}, 0},
         {{{true, both}}, 0},
-        {{{false, override}}, -1},
+        {{{false, onOverride}}, -1},
         {{{false, both}}, -1},
-        {{{true, override}, {true, on}}, 0},
-        {{{true, override}, {true, override}}, 0},
-        {{{true, override}, {true, protect}}, -1},
-        {{{true, override}, {true, both}}, 1},
+        {{{true, onOverride}, {true, on}}, 0},
+        {{{true, onOverride}, {true, onOverride}}, 0},
+        {{{true, onOverride}, {true, onProtected}}, -1},
+        {{{true, onOverride}, {true, both}}, 1},
         {{{true, both}, {true, both}}, 1},
-        {{{true, on}, {true, override}}, 1},
-        {{{true, protect}, {true, override}}, 1},
-        {{{false, override}, {true, override}}, 1},
+        {{{true, on}, {true, onOverride}}, 1},
+        {{{true, onProtected}, {true, onOverride}}, 1},
+        {{{false, onOverride}, {true, onOverride}}, 1},
         {{{false, both}, {true, on}}, -1},
-        {{{true, override}, {false, override}}, 0},
-        {{{true, override}, {false, both}}, 0},
+        {{{true, onOverride}, {false, onOverride}}, 0},
+        {{{true, onOverride}, {false, both}}, 0},
         {{{true, on}, {false, both}}, -1},
     };
     for (const bool isOsgProgram : {false, true})
@@ -646,8 +645,8 @@ TEST_F(HostGLTest, nearerHooksReplaceFartherOnes)
         return Picture::meanColor(*pictureOf(scene)).r();
     };
     EXPECT_NEAR(redUnder(on, hook("0.5"), on), 0.5, 0.01);
-    EXPECT_NEAR(redUnder(override, hook("0.5"), on), 0.25, 0.01);
-    EXPECT_NEAR(redUnder(override, hook("0.5"), protect), 0.5, 0.01);
+    EXPECT_NEAR(redUnder(onOverride, hook("0.5"), on), 0.25, 0.01);
+    EXPECT_NEAR(redUnder(onOverride, hook("0.5"), onProtected), 0.5, 0.01);
     EXPECT_NEAR(redUnder(on, new ShaderHook(ShaderHook::Place::FinalColor), on), 1.0, 0.01);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "looks/LitSurfaceGLTest.h"
 #include "looks/Panel.h"
+#include "support/StateModes.h"
 
 #include <osgGpuAnimation/looks/CharacterProgram.h>
 #include <osgGpuAnimation/looks/shading/ShaderPermutations.h>
@@ -20,9 +21,6 @@ namespace osgGpuAnimation
 namespace
 {
 
-constexpr auto off = osg::StateAttribute::OFF;
-constexpr auto on = osg::StateAttribute::ON;
-constexpr auto override = osg::StateAttribute::OVERRIDE;
 constexpr auto overall = osg::Array::BIND_OVERALL;
 constexpr auto perVertex = osg::Array::BIND_PER_VERTEX;
 
@@ -85,10 +83,6 @@ void falsifyNormals(osg::Geometry& mesh)
     std::fill(normals.begin(), normals.end(), osg::Vec3(1, 0, 0));
     setUniform(mesh, "flatNormals");
 }
-
-// Edge pixels, and the lighting: per vertex in the fixed pipeline, per pixel here.
-constexpr int edgePixels = 40;
-constexpr float tolerance = 0.03f;
 
 using ShaderKeyGLTest = LitSurfaceGLTest;
 

@@ -3,6 +3,7 @@
 #include "looks/Panel.h"
 #include "looks/PbrPanelGLTest.h"
 #include "mesh/Tube.h"
+#include "support/StateModes.h"
 #include "support/TestCharacter.h"
 #include "support/ViewerGLTest.h"
 
@@ -27,10 +28,6 @@ namespace osgGpuAnimation
 
 namespace
 {
-
-constexpr auto on = osg::StateAttribute::ON;
-constexpr auto off = osg::StateAttribute::OFF;
-constexpr auto override = osg::StateAttribute::OVERRIDE;
 
 /// A state set above the character, as a user sets it.
 struct StateCase
@@ -105,10 +102,6 @@ protected:
         return ViewerGLTest::pictureOf(root, {0.0});
     }
 };
-
-// Edge pixels, and the lighting: per vertex in the fixed pipeline, per pixel here.
-constexpr int edgePixels = 40;
-constexpr float tolerance = 0.03f;
 
 TEST_P(SurfaceGLTest, looksAsInTheFixedPipeline)
 {

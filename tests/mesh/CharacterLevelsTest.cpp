@@ -25,7 +25,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-constexpr unsigned int partCount = 16;
+constexpr unsigned int armParts = 16;
 constexpr int coarsestOfAll = 99;
 
 /// A character of a tube in parts.
@@ -33,7 +33,7 @@ struct Arm
 {
     std::shared_ptr<const AnimationSet> set = armSet(true);
     osg::ref_ptr<osg::Group> meshes = new osg::Group;
-    std::vector<osg::ref_ptr<SkinnedGeometry>> parts = makeTubeParts(*set, partCount);
+    std::vector<osg::ref_ptr<SkinnedGeometry>> parts = makeTubeParts(*set, armParts);
 
     Arm()
     {
@@ -101,13 +101,13 @@ const MaterialsCase materialsCases[] = {
     {"two colours", 2,
      [](Arm& arm)
      {
-         for (std::size_t part = 0; part < partCount; ++part)
-             arm.parts[part]->setStateSet(stateOf({1, part < partCount / 2 ? 1.0f : 0.0f, 0, 1}));
+         for (std::size_t part = 0; part < armParts; ++part)
+             arm.parts[part]->setStateSet(stateOf({1, part < armParts / 2 ? 1.0f : 0.0f, 0, 1}));
      }},
     {"two masks", 2,
      [](Arm& arm)
      {
-         for (std::size_t part = 0; part < partCount / 2; ++part)
+         for (std::size_t part = 0; part < armParts / 2; ++part)
              arm.parts[part]->setNodeMask(2);
      }},
 };
@@ -201,7 +201,7 @@ TEST(CharacterLevelsTest, otherPartsKeepTheirOwnLevels)
         const std::shared_ptr<const CharacterLevels> levelsMade = madeLevels(*arm.meshes, *arm.set);
         const CharacterLevels& levels = *levelsMade;
         EXPECT_EQ(arm.mergedAt(levels, coarsestOfAll).size(), 1u);
-        for (std::size_t part = 0; part < partCount; ++part)
+        for (std::size_t part = 0; part < armParts; ++part)
         {
             EXPECT_EQ(levels.isMerged(*arm.parts[part], coarsestOfAll), part != 1) << part;
             EXPECT_EQ(arm.timesDrawn(levels, coarsestOfAll, *arm.parts[part]), part == 1 ? 1u : 0u) << part;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "looks/LitSurfaceGLTest.h"
 #include "looks/Panel.h"
+#include "support/StateModes.h"
 #include "support/TestCharacter.h"
 #include "support/ViewerGLTest.h"
 
@@ -126,8 +127,6 @@ TEST_F(PrimitiveKindsGLTest, areDrawnByInstancesAsByOneCharacter)
 namespace
 {
 
-constexpr auto on = osg::StateAttribute::ON;
-
 /// The front side alone: the fixed pipeline does not turn the normals of back faces.
 void removeBack(osg::Geometry& panel)
 {
@@ -211,12 +210,10 @@ protected:
     }
 };
 
-// The fixed pipeline lights the vertices and interpolates; edges.
-constexpr float tolerance = 0.04f;
-constexpr int edgePixels = 120;
-
 TEST_P(PlacedSurfacesGLTest, lookAsInTheFixedPipeline)
 {
+    constexpr float vertexLighting = 0.04f; // the fixed pipeline lights the vertices and interpolates
+    constexpr int edges = 120;
     const PlaceCase plain{"", [](osg::Group&) {}, nothing};
     const osg::ref_ptr<AnimatedCharacter> character = makePanelCharacter();
     const osg::ref_ptr<osg::Node> baked = makeBaked(*character);
@@ -228,8 +225,8 @@ TEST_P(PlacedSurfacesGLTest, lookAsInTheFixedPipeline)
     const osg::ref_ptr<osg::Image> expected = pictureWith(baked, GetParam());
     const osg::ref_ptr<osg::Image> found = pictureWith(character, GetParam());
     EXPECT_GT(picture().pixelsDrawn(), 1500);
-    EXPECT_LE(Picture::pixelsDifferent(*expected, *found, tolerance), edgePixels);
-    EXPECT_EQ(Picture::pixelsDifferent(*without, *found, tolerance) > 4 * edgePixels,
+    EXPECT_LE(Picture::pixelsDifferent(*expected, *found, vertexLighting), edges);
+    EXPECT_EQ(Picture::pixelsDifferent(*without, *found, vertexLighting) > 4 * edges,
               GetParam().name != std::string("Plain"));
     EXPECT_NO_GL_ERROR();
 }

@@ -53,14 +53,14 @@ protected:
     }
 };
 
-struct FaultCase
+struct CrowdFault
 {
     const char* file;
     const char* options;
     const char* message;
 };
 
-const FaultCase faults[] = {
+const CrowdFault crowdFaults[] = {
     {"arm.gltf.0x0.crowd", "", "is empty"},
     {"arm.gltf.3x0.crowd", "", "is empty"},
     {"arm.gltf.1001x1000.crowd", "", "1000000"},
@@ -274,7 +274,7 @@ TEST_F(CrowdPluginTest, saysWhichOptionsItTakesForMisspelt)
 
 TEST_F(CrowdPluginTest, faultsHaveAMessage)
 {
-    for (const FaultCase& fault : faults)
+    for (const CrowdFault& fault : crowdFaults)
         expectError(fault.file, fault.options, fault.message);
 }
 

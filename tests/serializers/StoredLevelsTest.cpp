@@ -124,7 +124,7 @@ void changeLevels(AnimatedCrowd& crowd)
     CrowdDetail::setLevels(crowd, CharacterLevels::restored(crowd, crowd.getAnimationSet(), merged).value());
 }
 
-struct FaultCase
+struct LevelFault
 {
     const char* name;
     const char* pattern; ///< a regular expression for what is in the .osgt …
@@ -154,7 +154,7 @@ protected:
     }
 
     /// The crowd of a sound .osgt with a fault, which costs no mesh. Null, with a failure: there is none.
-    osg::ref_ptr<AnimatedCrowd> readFaulty(const std::string& sound, const FaultCase& fault)
+    osg::ref_ptr<AnimatedCrowd> readFaulty(const std::string& sound, const LevelFault& fault)
     {
         Read result = readContent("faulty.osgt", replaced(sound, fault.pattern, fault.instead));
         EXPECT_NE(log->text.find(fault.message), std::string::npos) << log->text << result.message();
@@ -168,7 +168,7 @@ protected:
     osg::ref_ptr<AnimatedCrowd> crowd;
 };
 
-const FaultCase faults[] = {
+const LevelFault levelFaults[] = {
     {"another vertex", "(Vec3Array [^]*?vector 144 .*\n *)[^ ]+", "$1 0.25", "mesh \"upper\" are made anew: its vert"},
     {"another checksum", "Checksum -?[0-9]+", "Checksum 12", "mesh \"upper\" are made anew: its vertices or primit"},
     {"a list too few", "Levels 1 \\{\\s*Steps", "Levels 2 {\nSteps 0 {\n}\nSteps", "2 lists of levels for 1 primi"},
@@ -186,7 +186,7 @@ const FaultCase faults[] = {
     {"no triangles", "Indices [0-9]+ \\{[^}]*", "Indices 0 {\n", "step 0: 0 indices that are not whole"},
 };
 
-const FaultCase mergedFaults[] = {
+const LevelFault mergedFaults[] = {
     {"another checksum", "(Instances 1[^]*?)Checksum -?[0-9]+", "$1Checksum 12", "its meshes have changed"},
     {"a part that is not there", "Parts 2 \\{\\s*0 1", "Parts 2 {\n0 2", "merged parts 0: part 2 of 2"},
     {"a part twice", "Parts 2 \\{\\s*0 1", "Parts 2 {\n1 1", "merged parts 0: part 1 of 2"},
@@ -258,7 +258,7 @@ TEST_F(StoredLevelsTest, writersWaitForThoseOfChangedMeshes)
 TEST_F(StoredLevelsTest, faultsCostTheLevelsAlone)
 {
     const std::string sound = stored("osgt");
-    for (const FaultCase& fault : mergedFaults)
+    for (const LevelFault& fault : mergedFaults)
     {
         SCOPED_TRACE(fault.name);
         const osg::ref_ptr<AnimatedCrowd> back = readFaulty(sound, fault);
@@ -267,7 +267,7 @@ TEST_F(StoredLevelsTest, faultsCostTheLevelsAlone)
     }
     const std::size_t steps = stepsOf(*meshesOf(*crowd).front());
     changeLevels(*crowd);
-    for (const FaultCase& fault : faults)
+    for (const LevelFault& fault : levelFaults)
     {
         SCOPED_TRACE(fault.name);
         const osg::ref_ptr<AnimatedCrowd> back = readFaulty(sound, fault);

@@ -41,7 +41,15 @@ osgDB::ReaderWriter::ReadResult ModelReader::import(const std::string& fileName,
         if (!parsed) return ReadResult(parsed.error().message);
         gltf::ImportOptions own = parsed.value();
         gltf::Messages messages, failed;
+        const auto print = [subject = fileName.empty() ? "glTF stream" : fileName](const gltf::Messages& each)
+        {
+            for (const std::string& warning : each.warnings)
+                OSG_WARN << subject << ": " << warning << std::endl;
+            for (const std::string& note : each.notes)
+                OSG_INFO << subject << ": " << note << std::endl;
+        };
         const Result<std::string> bytes = read(own, messages);
+        print(messages);
         if (!bytes) return ReadResult(bytes.error().message);
         for (const std::string& hint : gltf::misspeltOptions(given, gltf::optionHelp()))
             OSG_WARN << className() << ": " << hint << std::endl;
@@ -49,15 +57,7 @@ osgDB::ReaderWriter::ReadResult ModelReader::import(const std::string& fileName,
         own.otherFormats = assimp::readAsGlbApart;
 #endif
         const Result<gltf::ImportedModel> model = gltf::importModel(bytes.value(), fileName, own, &failed);
-        const std::string subject = fileName.empty() ? "glTF stream" : fileName;
-        for (const gltf::Messages* each :
-             {&std::as_const(messages), model ? &model.value().messages : &std::as_const(failed)})
-        {
-            for (const std::string& warning : each->warnings)
-                OSG_WARN << subject << ": " << warning << std::endl;
-            for (const std::string& note : each->notes)
-                OSG_INFO << subject << ": " << note << std::endl;
-        }
+        print(model ? model.value().messages : failed);
         return model ? ReadResult(model.value().root.get()) : ReadResult(model.error().message);
     }
     catch (const std::bad_alloc&)

@@ -9,6 +9,7 @@
 
 #include <osgDB/FileNameUtils>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <sstream>

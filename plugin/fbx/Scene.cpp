@@ -254,8 +254,8 @@ void SceneReader::readModels()
         Model model;
         model.name = each.name;
         model.uniqueName = uniqueName(each.name, taken);
-        for (const MovingProperty& each : movingProperties)
-            model.*each.rest = vector(element, each.name, model.*each.rest);
+        for (const MovingProperty& property : movingProperties)
+            model.*property.rest = vector(element, property.name, model.*property.rest);
         model.rotationOrder = static_cast<int>(std::clamp(number(element, "RotationOrder", 0.0), 0.0, 6.0));
         if (model.rotationOrder == 6)
             _scene.warnings.push_back("node " + gltf::quoted(model.name) +

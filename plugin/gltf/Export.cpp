@@ -332,7 +332,7 @@ private:
         if (!source.getName().empty()) made["name"] = source.getName();
         if (max > 0.0f) made["color"] = {diffuse.x() / max, diffuse.y() / max, diffuse.z() / max};
         if (light->getRange() > 0.0f) made["range"] = light->getRange();
-        made["type"] = typeOf(kind);
+        made["type"] = lightTypeName(kind);
         if (const double inner = osg::DegreesToRadians(light->getInnerConeAngle()); kind == PunctualLight::Kind::Spot)
             made["spot"] = {{"innerConeAngle", inner < outer ? inner : 0.0}, {"outerConeAngle", outer}};
         const char* const extension = "KHR_lights_punctual";

@@ -25,8 +25,9 @@ public:
     BoneMotion(const osgAnimation::Bone& bone, const osgAnimation::UpdateBone* update,
                const osgAnimation::Animation* animation);
 
-    const osgAnimation::ChannelList& driving() const { return _channels; } ///< copies of those that drive the bone
-    osg::Matrixd at(double seconds);                                       ///< in the parent bone's space
+    /// Copies of the channels that drive the bone.
+    const osgAnimation::ChannelList& linkedChannels() const { return _channels; }
+    osg::Matrixd at(double seconds); ///< in the parent bone's space
 
     /// Keys for translation, rotation and scale, all at the same times, with linear interpolation between them: at the
     /// channels' own key times, and at as many more as it takes for the matrix between them to differ by less than

@@ -23,8 +23,9 @@ public:
     MorphMotion(std::vector<float> rest, osgAnimation::UpdateMorph* update, const osgAnimation::Animation& animation);
 
     bool drives(std::size_t weight) const { return _targets[weight].valid(); }
-    const osgAnimation::ChannelList& driving() const { return _channels; } ///< copies of those that drive the weights
-    std::vector<float> at(double seconds);                                 ///< one per target
+    /// Copies of the channels that drive the weights.
+    const osgAnimation::ChannelList& linkedChannels() const { return _channels; }
+    std::vector<float> at(double seconds); ///< one per target
     /// Linear keys, as those of BoneMotion. target: the index of the morph weights.
     Channel channel(int target);
 

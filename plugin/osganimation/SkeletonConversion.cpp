@@ -187,9 +187,9 @@ void SkeletonConverter::addClips(const std::vector<Manager>& managers, Animation
             for (std::size_t i = 0; i < _bones.size(); ++i)
             {
                 BoneMotion motion(*_bones[i].bone, _bones[i].update, animation);
-                if (motion.driving().empty()) continue;
+                if (motion.linkedChannels().empty()) continue;
                 isMoving = true;
-                take(motion.driving());
+                take(motion.linkedChannels());
                 for (Channel& channel : motion.channels(parts.skeleton.jointOfInput(i)))
                     if (const Result<void> added = builder.add(std::move(channel)); !added)
                         _warnings.push_back("animation \"" + animation->getName() + "\", bone \"" +
@@ -211,9 +211,9 @@ bool SkeletonConverter::addWeights(const osgAnimation::Animation& animation, con
         if (!mesh.morph) continue;
         const int target = morph++;
         MorphMotion motion(parts.morphs[static_cast<std::size_t>(target)].defaults, mesh.weights, animation);
-        if (motion.driving().empty()) continue;
+        if (motion.linkedChannels().empty()) continue;
         isMoving = true;
-        take(motion.driving());
+        take(motion.linkedChannels());
         if (const Result<void> added = builder.add(motion.channel(target)); !added)
             _warnings.push_back("animation \"" + animation.getName() + "\", mesh \"" + mesh.geometry->getName() +
                                 "\": " + added.error().message);
@@ -321,7 +321,7 @@ Conversion convertOsgAnimation(osg::Node& node)
         std::set<std::string> left; // channels that no clip has
         for (const osg::ref_ptr<osgAnimation::Animation>& animation : each.manager->getAnimationList())
             for (const osg::ref_ptr<osgAnimation::Channel>& channel : animation->getChannels())
-                if (taken.count(nameOf(*channel)) == 0) left.insert(nameOf(*channel));
+                if (channel->getSampler() && taken.count(nameOf(*channel)) == 0) left.insert(nameOf(*channel));
         if (left.empty()) each.owner->removeUpdateCallback(each.manager);
         if (left.empty() || result.characters.empty()) continue;
         result.warnings.push_back("the animation manager stays, for channels that move no bone: " +

@@ -176,7 +176,8 @@ Result<void> ConvertCommand::run() const
     if (!scene) return Error{file + ": " + scene.error().message};
     const Result<std::string> bytes =
         extension == "glb" ? glbOf(*scene.value(), output) : osgFileOf(*scene.value(), extension);
-    if (!bytes) return Error{output + ": " + bytes.error().message + missingSerializers(file)};
+    if (!bytes)
+        return Error{output + ": " + bytes.error().message + (extension == "glb" ? missingSerializers(file) : "")};
     const Result<void> saved = gltf::saveFile(output, bytes.value());
     if (!saved) return Error{output + ": " + saved.error().message};
     return {};

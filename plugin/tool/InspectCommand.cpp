@@ -205,7 +205,7 @@ ordered_json reportLights(const gltf::ImportedModel& model)
             const auto& made = dynamic_cast<const PunctualLight&>(*light.source->getLight());
             report["number"] = made.getLightNum();
             report["name"] = made.getName();
-            report["type"] = gltf::typeOf(made.getKind());
+            report["type"] = gltf::lightTypeName(made.getKind());
         }
         lights.push_back(std::move(report));
     }

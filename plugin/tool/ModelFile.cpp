@@ -82,6 +82,18 @@ Result<gltf::ImportedModel> importFile(const std::string& fileName, const gltf::
     return model;
 }
 
+/// True for a file's name, and for one that a pseudo-loader takes: a file's name and more extensions.
+bool beginsWithFile(std::string name)
+{
+    std::error_code failure;
+    while (!std::filesystem::exists(name, failure))
+        if (const std::string shorter = osgDB::getNameLessExtension(name); shorter != name)
+            name = shorter;
+        else
+            return false;
+    return true;
+}
+
 /// Names for OSG's pseudo-loaders are no files: `fox.glb.studio` shows `fox.glb`.
 Error noSuchFile(const std::string& fileName)
 {
@@ -161,8 +173,7 @@ Result<osg::ref_ptr<osg::Node>> readScene(const std::string& fileName, gltf::Rep
     osgDB::ReaderWriter::ReadResult read = osgDB::Registry::instance()->readNode(fileName, nullptr);
     if (read.status() == osgDB::ReaderWriter::ReadResult::FILE_NOT_FOUND) return noSuchFile(fileName);
     const osg::ref_ptr<osg::Node> scene = read.getNode();
-    std::error_code failure;
-    if (!scene && read.message().empty() && !std::filesystem::exists(fileName, failure)) return noSuchFile(fileName);
+    if (!scene && read.message().empty() && !beginsWithFile(fileName)) return noSuchFile(fileName);
     if (!scene)
         return Error{"OSG cannot read it" + (read.message().empty() ? "" : ": " + read.message()) +
                      missingSerializers(fileName)};
@@ -181,7 +192,8 @@ Result<gltf::ImportedModel> readModel(const std::string& fileName, const gltf::I
     const bool isThere = std::filesystem::exists(fileName, failure);
     const bool isForViewers = osgDB::getLowerCaseFileExtension(fileName) == "studio";
     if (!isThere && (isForViewers || !isSceneFormat(fileName))) return noSuchFile(fileName);
-    if (const Result<RegularFile> file = RegularFile::open(fileName); isThere && !file) return file.error();
+    if (isThere)
+        if (const Result<RegularFile> file = RegularFile::open(fileName); !file) return file.error();
 
     gltf::Messages messages;
     const Result<gltf::ImportedModel> model = importFile(fileName, options, messages);

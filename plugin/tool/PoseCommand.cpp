@@ -59,7 +59,8 @@ PoseRequest readRequest(const nlohmann::json& document)
 /// schema, a missing member or one of another type.
 Result<PoseRequest> readPoseRequest(const std::string& fileName)
 {
-    const Result<std::string> text = RegularFile::readWhole(fileName, std::uint64_t(1) << 30);
+    constexpr std::uint64_t maxBytes = std::uint64_t(1) << 30;
+    const Result<std::string> text = RegularFile::readWhole(fileName, maxBytes);
     if (!text) return text.error();
     try
     {

@@ -26,7 +26,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-const double pi = std::acos(-1.0);
+const double fullTurn = 2.0 * std::acos(-1.0);
 
 /// An armature as in many files (lying on its back, in centimetres) with hips and one more joint.
 Skeleton makeSkeleton()
@@ -59,7 +59,7 @@ Clip makeClip(const Skeleton& skeleton, const Gait& gait)
     { channel.values.insert(channel.values.end(), v); };
     for (int key = 0; key <= keys; ++key)
     {
-        const double share = static_cast<double>(key) / keys, wave = 2.0 * pi * share;
+        const double share = static_cast<double>(key) / keys, wave = fullTurn * share;
         place.times.push_back(gait.duration * share);
         turn.times.push_back(gait.duration * share);
         put(place, {4.0 * std::sin(wave), 100.0 * gait.length * share, 100.0 + 3.0 * std::sin(2.0 * wave)});

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "GpuPage.h"
 
+#include "Report.h"
+
 #include <osgGpuAnimation/gpu/detail/Renderer.h>
 
 #include <nlohmann/json.hpp>
@@ -8,7 +10,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <iomanip>
 #include <ostream>
 #include <sstream>
 
@@ -17,13 +18,6 @@ namespace osgGpuAnimation::benchmark
 
 namespace
 {
-
-std::string digits(double value)
-{
-    std::ostringstream text;
-    text << std::fixed << std::setprecision(value < 10.0 ? 2 : value < 100.0 ? 1 : 0) << value;
-    return text.str();
-}
 
 std::string orDash(double value)
 {

@@ -75,9 +75,6 @@ std::vector<Series> interleaved(int rounds, const std::vector<std::function<Spen
     return series;
 }
 
-namespace
-{
-
 std::string digits(double value)
 {
     std::ostringstream text;
@@ -87,6 +84,9 @@ std::string digits(double value)
         text << std::fixed << std::setprecision(value < 10.0 ? 2 : value < 100.0 ? 1 : 0) << value;
     return text.str();
 }
+
+namespace
+{
 
 std::string text(const Figure& figure)
 {

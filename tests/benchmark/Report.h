@@ -56,6 +56,9 @@ Figure ratioOf(const Series& dividend, const Series& divisor);
 /// Runs the contestants in turns, once unmeasured and then `rounds` times; returns one series per contestant.
 std::vector<Series> interleaved(int rounds, const std::vector<std::function<Spent()>>& contestants);
 
+/// Two or three digits, or as many as the number has before the point.
+std::string digits(double value);
+
 /// A row of the table: our figure, alone or against another contestant's, and perhaps a limit:
 ///
 ///     report.add(Row(subject, 1000, "skinned draw", "µs a character", ours, 1e3).against("unskinned",

@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <fstream>
 #include <iostream>
-#include <iterator>
 #include <map>
 #include <set>
 #include <thread>
@@ -53,10 +52,19 @@ constexpr std::pair<const char*, void (*)(const Subject&, Run&)> parts[] = {
     {"shading", measureShading},   {"start", measureStart},
     {"memory", measureMemory},     {"load", measureLoad}};
 
-bool isPart(const std::string& name)
+/// Says which of the parts of --only do not exist.
+bool checkParts(const Request& request)
 {
-    return name == "gpu" ||
-           std::any_of(std::begin(parts), std::end(parts), [&](const auto& part) { return name == part.first; });
+    std::vector<std::string> known{"depth", "mixed", "gpu"}; // of no one file
+    for (const auto& [name, function] : parts)
+        known.push_back(name);
+    for (const std::string& part : request.parts)
+        if (std::find(known.begin(), known.end(), part) == known.end())
+        {
+            std::cerr << "there is no part \"" << part << "\"; the parts are " << quotedNames(known) << std::endl;
+            return false;
+        }
+    return true;
 }
 
 bool parse(int count, char** words, Request& request)
@@ -67,7 +75,7 @@ bool parse(int count, char** words, Request& request)
     for (std::string part; parser.read("--only", part);)
         request.parts.insert(part);
     if (parser.containsOptions() || parser.argc() < 3) return false;
-    if (!std::all_of(request.parts.begin(), request.parts.end(), isPart)) return false;
+    if (!checkParts(request)) return false;
     request.folder = parser[1];
     request.files.assign(words + 2, words + parser.argc());
     return true;

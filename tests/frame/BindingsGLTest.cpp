@@ -42,7 +42,7 @@ osg::ref_ptr<osg::Node> makeMorphing()
     return character;
 }
 
-osg::ref_ptr<osg::Node> makeLooking()
+osg::ref_ptr<osg::Node> makeConstrained()
 {
     osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
     const auto set = character->getAnimationSet().withConstraints({LookAt{"look", {"base"}}});
@@ -80,7 +80,7 @@ struct Scene
 const Scene scenes[] = {
     {"characters drawn together", makeTwins},
     {"morph targets", makeMorphing},
-    {"a constraint", makeLooking},
+    {"a constraint", makeConstrained},
     {"a crowd of shared poses", [] { return makeCrowd(true); }},
     {"a crowd of own poses", [] { return makeCrowd(false); }},
     {"surroundings from a picture", makeSurrounded},

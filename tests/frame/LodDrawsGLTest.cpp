@@ -28,7 +28,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-constexpr float pixelError = 100.0f; ///< selects the coarsest level of every mesh that has levels
+constexpr float largeError = 100.0f; ///< selects the coarsest level of every mesh that has levels
 
 class LodDrawsGLTest : public ViewerGLTest
 {
@@ -71,7 +71,7 @@ void fillUp(AnimatedCharacter& character)
 TEST_F(LodDrawsGLTest, whatComesAfterTheMostVerticesOrBelowOtherNodesIsDrawnWhole)
 {
     const osg::ref_ptr<AnimatedCharacter> nested = makeTubeCharacter(armSet()), large = makeTubeCharacter(armSet());
-    ASSERT_TRUE(large->getMeshes().setPixelError(pixelError));
+    ASSERT_TRUE(large->getMeshes().setPixelError(largeError));
     EXPECT_LT(trianglesOf(*large), tubeTriangles / 4);
     const osg::ref_ptr<osg::Group> group = new osg::Group;
     group->addChild(makeShownTube(nested->getAnimationSet()));
@@ -79,7 +79,7 @@ TEST_F(LodDrawsGLTest, whatComesAfterTheMostVerticesOrBelowOtherNodesIsDrawnWhol
     fillUp(*large);
     large->addChild(makeShownTube(large->getAnimationSet()));
     for (const auto& character : {nested, large})
-        ASSERT_TRUE(character->getMeshes().setPixelError(pixelError));
+        ASSERT_TRUE(character->getMeshes().setPixelError(largeError));
     for (const auto& scene : std::vector<osg::ref_ptr<osg::Node>>{nested, large, makeCrowd(*large)})
     {
         const GLuint triangles = trianglesOf(*scene);
@@ -92,7 +92,7 @@ TEST_F(LodDrawsGLTest, whatComesAfterTheMostVerticesOrBelowOtherNodesIsDrawnWhol
 TEST_F(LodDrawsGLTest, whatReachesBehindTheEyeIsDrawnWhole)
 {
     const osg::ref_ptr<AnimatedCharacter> character = makeTubeCharacter(armSet());
-    ASSERT_TRUE(character->getMeshes().setPixelError(pixelError));
+    ASSERT_TRUE(character->getMeshes().setPixelError(largeError));
     const osg::BoundingSphere bound = character->getBound(); // the crowd's instance has the same
     for (const auto& animated : std::vector<osg::ref_ptr<osg::Node>>{character, makeCrowd(*character)})
     {
@@ -136,7 +136,7 @@ TEST_F(LodDrawsGLTest, charactersOfASetHaveLevelsOfTheirOwnMeshes)
     for (int i = 0; i < 4; ++i)
     {
         const osg::ref_ptr<AnimatedCharacter> character = makeTubeCharacter(set);
-        ASSERT_TRUE(character->getMeshes().setPixelError(pixelError));
+        ASSERT_TRUE(character->getMeshes().setPixelError(largeError));
         // The mesh is set after setPixelError().
         character->setChild(0, makeShownTube(*set));
         if (i % 2 == 1) character->insertChild(0, makeBlank(1));

@@ -59,7 +59,7 @@ osg::ref_ptr<osg::Geometry> makeScreen(osg::Texture2D& texture)
     return screen;
 }
 
-osg::ref_ptr<osg::Texture2D> makeTexture()
+osg::ref_ptr<osg::Texture2D> makeFilm()
 {
     osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D;
     texture->setTextureSize(32, 32);
@@ -121,7 +121,7 @@ TEST_P(NestedCameraGLTest, filmsWhatItAloneSeesOrTheViewerToo)
         osg::ref_ptr<osg::Image> expected =
             areSeenByBoth ? direct(64, background) : drawn(new osg::Group, osgViewer::ViewerBase::SingleThreaded);
         expected->copySubImage(32, 0, 0, direct(32, filmBackground));
-        osg::ref_ptr<osg::Texture2D> texture = makeTexture();
+        osg::ref_ptr<osg::Texture2D> texture = makeFilm();
         osg::ref_ptr<osg::Group> scene = makeScene(), root = new osg::Group;
         root->addChild(makeScreen(*texture));
         root->addChild(makeCamera(*texture, *scene));

@@ -234,14 +234,14 @@ double differenceFromTwin(osg::State& state, const AnimationController& controll
     return largest;
 }
 
-constexpr std::size_t everybody = 400, every = 20;
+constexpr std::size_t instanceCount = 400, every = 20;
 
 bool isDear(std::size_t number)
 {
     return number % every == 0;
 }
 
-osg::Matrixd placeOf(std::size_t number)
+osg::Matrixd placeInRow(std::size_t number)
 {
     return osg::Matrixd::translate(-4.0 + 0.01 * static_cast<double>(number), 0.0, 0.0);
 }
@@ -269,7 +269,7 @@ protected:
     void expectApart(const AnimatedCrowd& crowd)
     {
         std::size_t found[2] = {};
-        for (std::size_t number = 0; number < everybody; ++number)
+        for (std::size_t number = 0; number < instanceCount; ++number)
         {
             const std::size_t slot = isDear(number) ? 1 : 0;
             EXPECT_LT(differenceFromTwin(state(), CrowdDetail::instances(crowd).controllerCopy(number),
@@ -283,12 +283,12 @@ protected:
 TEST_F(BlendCostsGLTest, ofACrowdThoseWhoFadeAreMixedApart)
 {
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
-    for (std::size_t number = 0; number < everybody; ++number)
-        ASSERT_TRUE(crowd->add(placeOf(number), fading(number)));
+    for (std::size_t number = 0; number < instanceCount; ++number)
+        ASSERT_TRUE(crowd->add(placeInRow(number), fading(number)));
     viewer().setSceneData(crowd);
     drawAt(0.0);
     drawAt(0.25);
-    EXPECT_EQ(bytesUploadedAt(0.5), 16 * (everybody - everybody / every + 2 * everybody / every));
+    EXPECT_EQ(bytesUploadedAt(0.5), 16 * (instanceCount - instanceCount / every + 2 * instanceCount / every));
     expectApart(*crowd);
 }
 
@@ -297,12 +297,12 @@ TEST_F(BlendCostsGLTest, ofACrowdThoseWithAPoseAreMixedApart)
     constexpr std::size_t tip = 1;
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
     std::vector<AnimatedCrowd::Instance> instances;
-    for (std::size_t number = 0; number < everybody; ++number)
-        instances.push_back(crowd->add(placeOf(number), playing("shift")).value());
+    for (std::size_t number = 0; number < instanceCount; ++number)
+        instances.push_back(crowd->add(placeInRow(number), playing("shift")).value());
     viewer().setSceneData(crowd);
     drawAt(0.0);
     drawAt(0.1);
-    for (std::size_t number = 0; number < everybody; number += every)
+    for (std::size_t number = 0; number < instanceCount; number += every)
         crowd->getController(instances[number])->layer(1).pose().setRotation(tip, glm::quat(0.8f, 0.0f, 0.6f, 0.0f));
     const PosePipeline::Counters before = counters();
     drawAt(0.2);
@@ -311,25 +311,25 @@ TEST_F(BlendCostsGLTest, ofACrowdThoseWithAPoseAreMixedApart)
     // In the next frame only samples and one pose are uploaded.
     crowd->getController(instances[every])->layer(1).pose().setRotation(tip, glm::quat(0.6f, 0.0f, 0.8f, 0.0f));
     const std::size_t keyframe = testCharacterSet()->trackCount() * sizeof(JointTransform);
-    EXPECT_EQ(bytesUploadedAt(0.3), keyframe + 16 * (everybody + everybody / every));
+    EXPECT_EQ(bytesUploadedAt(0.3), keyframe + 16 * (instanceCount + instanceCount / every));
 }
 
 TEST_F(BlendCostsGLTest, ofSeparateCharactersThoseWhoFadeAreMixedApart)
 {
     osg::ref_ptr<osg::Group> root = new osg::Group;
     std::vector<AnimatedCharacter*> characters;
-    for (std::size_t number = 0; number < everybody; ++number)
+    for (std::size_t number = 0; number < instanceCount; ++number)
     {
         osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
         character->getController() = fading(number);
-        character->setMatrix(placeOf(number));
+        character->setMatrix(placeInRow(number));
         root->addChild(character);
         characters.push_back(character);
     }
     pictureOf(root, {0.0, 0.25, 0.5});
     // The first minBatchSize characters share one batch at any blend cost; later ones join the batch of their cost.
     std::size_t found[2] = {};
-    for (std::size_t number = 0; number < everybody; ++number)
+    for (std::size_t number = 0; number < instanceCount; ++number)
     {
         const std::size_t slot = found[0] < PoseBatch::minBatchSize || isDear(number) ? 0 : 1;
         EXPECT_LT(differenceFromTwin(state(), characters[number]->getController(), AffineMatrix(), slot, found[slot]++),
@@ -342,7 +342,7 @@ TEST_F(BlendCostsGLTest, fewStayInOneBatch)
 {
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
     for (std::size_t number = 0; number < PoseBatch::minBatchSize; ++number)
-        ASSERT_TRUE(crowd->add(placeOf(number), fading(number)));
+        ASSERT_TRUE(crowd->add(placeInRow(number), fading(number)));
     viewer().setSceneData(crowd);
     drawAt(0.0);
     const PosePipeline::Counters before = counters();

@@ -52,7 +52,7 @@ public:
     mutable std::vector<Draw> draws;
 };
 
-constexpr std::size_t across = 40; ///< instances of a row
+constexpr std::size_t rowLength = 40; ///< instances of a row
 constexpr double fieldOfView = 30.0;
 
 class SharedPosesGLTest : public ViewerGLTest
@@ -64,13 +64,13 @@ protected:
     {
         ViewerGLTest::SetUp();
         _crowd = new AnimatedCrowd(*makeTubeCharacter(armSet()));
-        for (std::size_t i = 0; i < across * across; ++i)
+        for (std::size_t i = 0; i < rowLength * rowLength; ++i)
         {
             AnimationController controller(_crowd->getSharedAnimationSet());
             EXPECT_TRUE(controller.play(0));
             controller.seek(0.001 * static_cast<double>(_random() % 1000));
-            const double x = 12.0 * (static_cast<double>(i % across) - 0.5 * across);
-            const double y = 12.0 * static_cast<double>(i / across);
+            const double x = 12.0 * (static_cast<double>(i % rowLength) - 0.5 * rowLength);
+            const double y = 12.0 * static_cast<double>(i / rowLength);
             const osg::Matrixd turned = osg::Matrixd::rotate(0.1 * static_cast<double>(i), 0, 0, 1);
             const osg::Matrixd sized =
                 osg::Matrixd::scale(osg::Vec3d(1, 1, 1) * (0.5 + 0.01 * static_cast<double>(i % 100)));
@@ -172,7 +172,7 @@ TEST_F(SharedPosesGLTest, posesAndLevelsTogetherStayWithinThePixelError)
                 largest = std::max(largest, pixels);
             }
         }
-        EXPECT_GT(drawn, across * across / 4);
+        EXPECT_GT(drawn, rowLength * rowLength / 4);
         EXPECT_GT(largest, 0.3 * static_cast<double>(pixelError)) << "the error is used";
         EXPECT_LT(evaluated, drawn / 2) << "poses are shared";
     }
@@ -192,7 +192,7 @@ TEST_F(SharedPosesGLTest, uploadsFollowWhatChanges)
     };
     bytesAt(0.0);
     EXPECT_LE(bytesAt(0.1), 8 * sharing() + 16 * sharing() / 3) << "all play in place";
-    EXPECT_GT(sharing(), across * across / 3);
+    EXPECT_GT(sharing(), rowLength * rowLength / 3);
     EXPECT_EQ(bytesAt(0.1), 0u) << "nothing happens";
     for (std::size_t i = 0; i < _instances.size(); ++i)
         ASSERT_TRUE(_crowd->setPlacement(_instances[i],
@@ -257,7 +257,7 @@ TEST_F(SharedPosesGLTest, theyLookAsWithPosesOfTheirOwn)
     viewer().setSceneData(_crowd);
     expectShared(true);
     // A context whose buffer textures are too small for the placements, known from its first frame on.
-    pipeline().options().maxTexels = across * across;
+    pipeline().options().maxTexels = rowLength * rowLength;
     expectShared(false);
 }
 

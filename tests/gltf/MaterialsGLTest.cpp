@@ -25,9 +25,9 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
-using Change = void (*)(MaterialUse&);
+using MaterialChange = void (*)(MaterialUse&);
 
-void nothing(MaterialUse&) {}
+void keep(MaterialUse&) {}
 
 /// Null if the material has no such map.
 const MaterialMap* mapAt(const MaterialMaps& maps, PbrMaterial::Map PbrMaterial::*place)
@@ -49,10 +49,14 @@ protected:
 
     tinygltf::Material& material() { return file.model.materials[0]; }
 
-    osg::ref_ptr<osg::StateSet> state(bool palette, Change change = nothing) { return states(palette, change).front(); }
+    osg::ref_ptr<osg::StateSet> state(bool palette, MaterialChange change = keep)
+    {
+        return states(palette, change).front();
+    }
 
     /// States of all materials, in the file's order, of meshes with all texture coordinates.
-    std::vector<osg::ref_ptr<osg::StateSet>> states(bool palette, Change change = nothing, bool fixedLighting = true)
+    std::vector<osg::ref_ptr<osg::StateSet>> states(bool palette, MaterialChange change = keep,
+                                                    bool fixedLighting = true)
     {
         Report report(messages);
         Textures textures(file.model, report, !fixedLighting);
@@ -155,7 +159,7 @@ TEST_F(MaterialsTest, colorsAreBroughtToDisplaySpace)
     material().extensions["KHR_materials_emissive_strength"] = valueOf(R"({"emissiveStrength":2.0})");
     const auto expectColors = [&](bool palette, bool fixedLighting)
     {
-        const osg::ref_ptr<osg::StateSet> made = states(palette, nothing, fixedLighting).front();
+        const osg::ref_ptr<osg::StateSet> made = states(palette, keep, fixedLighting).front();
         const auto* surface = get<osg::Material>(*made, osg::StateAttribute::MATERIAL);
         ASSERT_TRUE(surface);
         const osg::Vec4 color = surface->getDiffuse(osg::Material::FRONT);

@@ -193,15 +193,15 @@ const MeshChange meshChanges[] = {
      allApart},
 };
 
-using Triangle = std::array<std::uint32_t, 3>;
+using Corners = std::array<std::uint32_t, 3>;
 
 /// Each triangle starts with its smallest index and keeps its winding.
-std::vector<Triangle> sortedTriangles(const std::vector<std::uint32_t>& indices)
+std::vector<Corners> sortedTriangles(const std::vector<std::uint32_t>& indices)
 {
-    std::vector<Triangle> triangles;
+    std::vector<Corners> triangles;
     for (std::size_t i = 0; i + 2 < indices.size(); i += 3)
     {
-        Triangle triangle{indices[i], indices[i + 1], indices[i + 2]};
+        Corners triangle{indices[i], indices[i + 1], indices[i + 2]};
         std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()), triangle.end());
         triangles.push_back(triangle);
     }
@@ -478,10 +478,10 @@ TEST(MeshesTest, blendedTrianglesKeepTheirOrder)
 TEST(MeshesTest, trianglesAreReorderedForTheVertexCache)
 {
     constexpr std::uint32_t side = 40;
-    std::vector<Triangle> triangles = sortedTriangles(sheetIndices(side - 1));
+    std::vector<Corners> triangles = sortedTriangles(sheetIndices(side - 1));
     std::shuffle(triangles.begin(), triangles.end(), std::mt19937(7));
     std::vector<std::uint32_t> indices;
-    for (const Triangle& triangle : triangles)
+    for (const Corners& triangle : triangles)
         indices.insert(indices.end(), triangle.begin(), triangle.end());
     EXPECT_GT(shadedVertices(indices), 4u * side * side);
     optimizeForVertexCache(indices, side * side);

@@ -29,7 +29,7 @@ struct Case
     const char* element; ///< in the message
 };
 
-const Case cases[] = {
+const Case libraryCases[] = {
     {"meshoptimizer", !OSGGPUANIMATION_WITH_MESHOPTIMIZER, "EXT_meshopt_compression",
      R"({"bufferViews":[{"buffer":0,"byteLength":64,"extensions":{"EXT_meshopt_compression":
          {"buffer":0,"byteLength":64,"byteStride":4,"count":16,"mode":"ATTRIBUTES"}}}]})",
@@ -44,7 +44,7 @@ const Case cases[] = {
 
 TEST(MissingLibrariesTest, areNamed)
 {
-    for (const Case& each : cases)
+    for (const Case& each : libraryCases)
     {
         const std::string sentence =
             std::string(each.element) + " needs " + each.library + ", without which this osgGpuAnimation was built";

@@ -31,7 +31,7 @@ ImportedModel unrotated(const ModelBuilder& file)
 }
 
 /// The position of a vertex of the node's mesh at rest.
-glm::dvec3 place(const ImportedModel& model, int node, std::size_t vertex)
+glm::dvec3 vertexAt(const ImportedModel& model, int node, std::size_t vertex)
 {
     return ModelVertices(model, -1, 0.0).positions(primitiveOf(model, node)).at(vertex);
 }
@@ -105,7 +105,7 @@ TEST(OddModelsTest, quantizedPositionsAndTargetsAreTheNumbersTheyStandFor)
         const int node = file.node("stone", -1, mesh);
         if (isSigned) file.at(node).weights = {0.5};
         const double expected = (isSigned ? 1.5 : 1.0) * type.expected;
-        EXPECT_NEAR(place(unrotated(file), node, 1).x, expected, 1e-6 * std::abs(expected));
+        EXPECT_NEAR(vertexAt(unrotated(file), node, 1).x, expected, 1e-6 * std::abs(expected));
     }
 }
 
@@ -127,8 +127,8 @@ TEST(OddModelsTest, integerWeightsAreShares)
         const int body = file.node("body", -1, mesh);
         file.at(body).skin = file.skin({here, there});
         const ImportedModel model = unrotated(file);
-        expectAt(place(model, body, 1), {1, 0, 2});
-        expectAt(place(model, body, 2), {0, 1, 10});
+        expectAt(vertexAt(model, body, 1), {1, 0, 2});
+        expectAt(vertexAt(model, body, 2), {0, 1, 10});
     }
 }
 
@@ -145,8 +145,8 @@ TEST(OddModelsTest, aSkinnedMeshLeavesItsNodesPlaceAsideAndAnUnskinnedOneDoesNot
     const int statue = file.node("statue", -1, mesh); // the same mesh with its joints, but without a skin
     file.at(statue).translation = {100, 0, 0};
     const ImportedModel model = unrotated(file);
-    expectAt(place(model, body, 1), {1, 0, 4});
-    expectAt(place(model, statue, 1), {101, 0, 0});
+    expectAt(vertexAt(model, body, 1), {1, 0, 4});
+    expectAt(vertexAt(model, statue, 1), {101, 0, 0});
 }
 
 TEST(OddModelsTest, jointsUnderTwoSkinsHaveTwoInverseBinds)
@@ -166,8 +166,8 @@ TEST(OddModelsTest, jointsUnderTwoSkinsHaveTwoInverseBinds)
                                              1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, 0, 0, 1});
     }
     const ImportedModel model = unrotated(file);
-    expectAt(place(model, bodies[0], 1), {2, 0, 0});
-    expectAt(place(model, bodies[1], 1), {12, 0, 0});
+    expectAt(vertexAt(model, bodies[0], 1), {2, 0, 0});
+    expectAt(vertexAt(model, bodies[1], 1), {12, 0, 0});
 }
 
 TEST(OddModelsTest, aMorphedVertexIsSkinnedAfterwards)
@@ -187,8 +187,8 @@ TEST(OddModelsTest, aMorphedVertexIsSkinnedAfterwards)
     file.skin({hip, file.node("tip", hip)});
     file.at(bodies[1]).weights = {0.25}; // the node's before the mesh's
     const ImportedModel model = unrotated(file);
-    expectAt(place(model, bodies[0], 1), {3, 0, 6});
-    expectAt(place(model, bodies[1], 1), {3, 0, 1.5});
+    expectAt(vertexAt(model, bodies[0], 1), {3, 0, 6});
+    expectAt(vertexAt(model, bodies[1], 1), {3, 0, 1.5});
 }
 
 TEST(OddModelsTest, morphTargetsBringNormalsColorsAndTextureCoordinates)
@@ -268,8 +268,8 @@ TEST(OddModelsTest, zeroScaleCollapsesWhatHangsBelow)
     file.at(body).skin = file.skin({gone, knee});
     const int stone = file.node("stone", knee, file.triangle());
     const ImportedModel model = unrotated(file);
-    expectAt(place(model, body, 2), {1, 2, 3});
-    expectAt(place(model, stone, 2), {1, 2, 3});
+    expectAt(vertexAt(model, body, 2), {1, 2, 3});
+    expectAt(vertexAt(model, stone, 2), {1, 2, 3});
 }
 
 TEST(MorphDeltasTest, oneMeshUnderTwoNodesIsPackedOnceAlsoInCopiesAndStoredScenes)

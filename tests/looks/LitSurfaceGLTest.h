@@ -12,7 +12,7 @@
 namespace osgGpuAnimation
 {
 
-// Edge pixels, and the lighting: per vertex in the fixed pipeline, per pixel here.
+// Of pictures beside the fixed pipeline, which lights per vertex.
 constexpr int edgePixels = 40;
 constexpr float tolerance = 0.03f;
 

@@ -17,7 +17,7 @@ namespace
 
 constexpr unsigned int quads = 16;
 
-osg::ref_ptr<osg::Texture2D> makeTexture()
+osg::ref_ptr<osg::Texture2D> makeStripes()
 {
     osg::ref_ptr<osg::Image> image = new osg::Image;
     image->allocateImage(2, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE);
@@ -36,7 +36,7 @@ void setSurface(osg::StateSet& state)
     material->setAmbient(osg::Material::FRONT_AND_BACK, osg::Vec4(0.8f, 0.8f, 0.8f, 1));
     material->setDiffuse(osg::Material::FRONT_AND_BACK, osg::Vec4(0.8f, 0.8f, 0.8f, 1));
     state.setAttribute(material);
-    state.setTextureAttributeAndModes(0, makeTexture());
+    state.setTextureAttributeAndModes(0, makeStripes());
 }
 
 /// Adds one side of the panel: its vertices and triangles.

@@ -56,7 +56,7 @@ void setUnlit(osg::Node& mesh)
 }
 
 /// Characters and a crowd: unlit, textured panels in grey.
-osg::ref_ptr<osg::Group> makeScene()
+osg::ref_ptr<osg::Group> makePanels()
 {
     osg::ref_ptr<osg::Group> group = new osg::Group;
     osg::ref_ptr<AnimatedCharacter> character = makePanelCharacter();
@@ -125,14 +125,14 @@ class ProfilesGLTest : public ProfileGLTest, public ::testing::WithParamInterfac
 
 TEST_P(ProfilesGLTest, charactersAndCrowdsLookTheSame)
 {
-    const osg::ref_ptr<osg::Image> expected = pictureOf(makeScene());
+    const osg::ref_ptr<osg::Image> expected = pictureOf(makePanels());
     EXPECT_GT(picture().pixelsDrawn(), 3 * 200);
     if (!changeTo(GetParam())) return;
     GLint profile = 0;
     glGetIntegerv(0x9126, &profile); // GL_CONTEXT_PROFILE_MASK
     ASSERT_EQ(profile == 1, GetParam().profileMask == 1);
     // Multisampling softens edges: four panels with four edges of 16 pixels each, two pixels wide.
-    EXPECT_LE(Picture::pixelsDifferent(*expected, *pictureOf(makeScene())),
+    EXPECT_LE(Picture::pixelsDifferent(*expected, *pictureOf(makePanels())),
               GetParam().samples > 0 ? 4 * 4 * 16 * 2 : 0);
 }
 
@@ -155,7 +155,7 @@ public:
 TEST_P(ProfilesGLTest, leavesNoGlErrors)
 {
     if (!changeTo(GetParam())) return;
-    osg::ref_ptr<osg::Group> scene = makeScene();
+    osg::ref_ptr<osg::Group> scene = makePanels();
     osg::ref_ptr<ErrorNotes> notes = new ErrorNotes;
     static_cast<osg::Drawable&>(*scene->getChild(0)->asGroup()->getChild(0)).setDrawCallback(notes);
     pictureOf(scene);
@@ -194,7 +194,7 @@ private:
 
 TEST_F(ProfileGLTest, withoutFeedbackAndInstancingAllElseIsDrawnAndOneMessageSaysWhy)
 {
-    osg::ref_ptr<osg::Group> scene = makeScene();
+    osg::ref_ptr<osg::Group> scene = makePanels();
     const osg::ref_ptr<osg::Node> plain = makeBaked(*makePanelCharacter());
     scene->addChild(plain);
     const osg::ref_ptr<osg::Image> expected = pictureOf(plain);

@@ -501,7 +501,7 @@ TEST_F(HostGLTest, theProgramsAboveReplaceTheKitsByOsgsRuleIfTheySkin)
 }
 
 /// A hook of each place, and what it does to a white panel without lights, in front of black.
-struct PlaceCase
+struct HookPlace
 {
     const char* name;
     ShaderHook::Place place;
@@ -510,7 +510,7 @@ struct PlaceCase
     double area;     ///< of the panel, as a multiple
 };
 
-const PlaceCase placeCases[] = {
+const HookPlace hookPlaces[] = {
     {"EyeVertex", ShaderHook::Place::EyeVertex,
      "void hostEyeVertex(inout vec4 vertex, inout vec3 normal) { vertex.x *= 2.0; }", osg::Vec4(1, 1, 1, 1), 2},
     {"ClipVertex", ShaderHook::Place::ClipVertex,
@@ -544,7 +544,7 @@ TEST_F(HostGLTest, hooksOfEachPlaceAreCalled)
 {
     const int area = Picture::pixelsDrawn(*pictureOf(makeWhitePanel()));
     ASSERT_GT(area, 300);
-    for (const PlaceCase& each : placeCases)
+    for (const HookPlace& each : hookPlaces)
     {
         const osg::ref_ptr<osg::Group> scene = makeWhitePanel();
         scene->getStateSet()->setAttribute(new ShaderHook(each.place, each.text));
@@ -612,7 +612,7 @@ TEST_F(HostGLTest, hooksApplyInDepthPasses)
 {
     const int area = Picture::pixelsDrawn(*pictureOf(makeWhitePanel()));
     const osg::ref_ptr<ShaderHook> hooks[] = {
-        new ShaderHook(placeCases[0].place, placeCases[0].text),
+        new ShaderHook(hookPlaces[0].place, hookPlaces[0].text),
         new ShaderHook(ShaderHook::Place::FinalColor, "void hostFinalColor(inout vec4 color) { gl_FragDepth = 1.0; }")};
     for (const osg::ref_ptr<ShaderHook>& hook : hooks)
     {

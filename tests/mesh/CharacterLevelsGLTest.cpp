@@ -28,7 +28,7 @@ constexpr int across = 8; ///< instances per row and per column
 constexpr float pixelError = 0.5f;
 
 /// From dark to light along the tube.
-osg::ref_ptr<osg::Texture2D> makePicture()
+osg::ref_ptr<osg::Texture2D> makeColors()
 {
     osg::ref_ptr<osg::Image> image = new osg::Image;
     image->allocateImage(64, 1, 1, GL_RGB, GL_UNSIGNED_BYTE);
@@ -52,7 +52,7 @@ protected:
         const auto set = armSet();
         const osg::ref_ptr<AnimatedCharacter> character = new AnimatedCharacter(set);
         const osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
-        state->setTextureAttributeAndModes(0, makePicture());
+        state->setTextureAttributeAndModes(0, makeColors());
         state->setMode(GL_CULL_FACE, osg::StateAttribute::ON); // the tubes are open: nothing is seen inside
         applyCharacterProgram(*state);
         for (const osg::ref_ptr<SkinnedGeometry>& part : makeTubeParts(*set, partCount))

@@ -212,8 +212,8 @@ protected:
 
 TEST_P(PlacedSurfacesGLTest, lookAsInTheFixedPipeline)
 {
-    constexpr float vertexLighting = 0.04f; // the fixed pipeline lights the vertices and interpolates
-    constexpr int edges = 120;
+    constexpr float lightingTolerance = 0.04f; // the fixed pipeline lights the vertices and interpolates
+    constexpr int edgeCount = 120;
     const PlaceCase plain{"", [](osg::Group&) {}, nothing};
     const osg::ref_ptr<AnimatedCharacter> character = makePanelCharacter();
     const osg::ref_ptr<osg::Node> baked = makeBaked(*character);
@@ -225,8 +225,8 @@ TEST_P(PlacedSurfacesGLTest, lookAsInTheFixedPipeline)
     const osg::ref_ptr<osg::Image> expected = pictureWith(baked, GetParam());
     const osg::ref_ptr<osg::Image> found = pictureWith(character, GetParam());
     EXPECT_GT(picture().pixelsDrawn(), 1500);
-    EXPECT_LE(Picture::pixelsDifferent(*expected, *found, vertexLighting), edges);
-    EXPECT_EQ(Picture::pixelsDifferent(*without, *found, vertexLighting) > 4 * edges,
+    EXPECT_LE(Picture::pixelsDifferent(*expected, *found, lightingTolerance), edgeCount);
+    EXPECT_EQ(Picture::pixelsDifferent(*without, *found, lightingTolerance) > 4 * edgeCount,
               GetParam().name != std::string("Plain"));
     EXPECT_NO_GL_ERROR();
 }

@@ -248,12 +248,12 @@ struct MaterialCase
     void (*change)(Mesh&, State&);
 };
 
-constexpr osg::Array::Binding perVertex = osg::Array::BIND_PER_VERTEX;
+constexpr osg::Array::Binding eachVertex = osg::Array::BIND_PER_VERTEX;
 
 /// Red for each of four vertices.
 osg::ref_ptr<osg::Vec4ubArray> bytes(bool isNormalized)
 {
-    osg::ref_ptr<osg::Vec4ubArray> colors = new osg::Vec4ubArray(perVertex);
+    osg::ref_ptr<osg::Vec4ubArray> colors = new osg::Vec4ubArray(eachVertex);
     colors->assign(4, osg::Vec4ub(255, 0, 0, 255));
     colors->setNormalize(isNormalized);
     return colors;
@@ -271,7 +271,7 @@ const MaterialCase materialCases[] = {
     {"grey", true, [](Mesh&, State& state) { state.setTextureAttribute(0, makeMap(GL_LUMINANCE_ALPHA)); }},
     {"two-sided", true, [](Mesh&, State& state) { state.setMode(GL_CULL_FACE, osg::StateAttribute::OFF); }},
     {"culled from behind", true, [](Mesh&, State& state) { state.setAttributeAndModes(new osg::CullFace); }},
-    {"colours", true, [](Mesh& mesh, State&) { mesh.setColorArray(new osg::Vec4Array(perVertex, 4)); }},
+    {"colours", true, [](Mesh& mesh, State&) { mesh.setColorArray(new osg::Vec4Array(eachVertex, 4)); }},
     {"colours in bytes", true, [](Mesh& mesh, State&) { mesh.setColorArray(bytes(true)); }},
     {"one colour", true,
      [](Mesh& mesh, State&) { mesh.setColorArray(new osg::Vec4Array(osg::Array::BIND_OVERALL, 1)); }},
@@ -309,8 +309,8 @@ const MaterialCase materialCases[] = {
      }},
     {"no coordinates", false, [](Mesh& mesh, State&) { mesh.setTexCoordArray(0, nullptr); }},
     {"too few coordinates", false, [](Mesh& mesh, State&) { mesh.setTexCoordArray(0, new osg::Vec2Array(3)); }},
-    {"too few colours", false, [](Mesh& mesh, State&) { mesh.setColorArray(new osg::Vec4Array(perVertex, 3)); }},
-    {"colours without alpha", false, [](Mesh& mesh, State&) { mesh.setColorArray(new osg::Vec3Array(perVertex, 4)); }},
+    {"too few colours", false, [](Mesh& mesh, State&) { mesh.setColorArray(new osg::Vec4Array(eachVertex, 3)); }},
+    {"colours without alpha", false, [](Mesh& mesh, State&) { mesh.setColorArray(new osg::Vec3Array(eachVertex, 4)); }},
     {"colours up to 255", false, [](Mesh& mesh, State&) { mesh.setColorArray(bytes(false)); }},
 };
 
@@ -354,7 +354,7 @@ void expectColor(const osg::Vec4& found, const osg::Vec4& expected, const char* 
 TEST(SurfaceColorTest, isTheTexelTimesTheColourOfTheVertices)
 {
     const osg::ref_ptr<SkinnedGeometry> square = makeSquare();
-    osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array(perVertex);
+    osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array(eachVertex);
     for (const osg::Vec4 color : {osg::Vec4(1, 1, 1, 1), osg::Vec4(0.5f, 0.5f, 0.5f, 0.5f),
                                   osg::Vec4(0.5f, 0.25f, 1, 1), osg::Vec4(0, 0, 0.2f, 1)})
         colors->push_back(color);

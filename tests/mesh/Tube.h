@@ -29,4 +29,10 @@ std::vector<osg::ref_ptr<SkinnedGeometry>> makeTubeParts(const AnimationSet& set
 /// A character with such a tube that plays the clip.
 osg::ref_ptr<AnimatedCharacter> makeTubeCharacter(std::shared_ptr<const AnimationSet> set);
 
+/// A clone with nodes of its own.
+inline osg::ref_ptr<AnimatedCharacter> cloneOf(const AnimatedCharacter& character)
+{
+    return osg::clone(&character, osg::CopyOp::DEEP_COPY_NODES);
+}
+
 } // namespace osgGpuAnimation

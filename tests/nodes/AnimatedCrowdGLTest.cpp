@@ -24,7 +24,7 @@ namespace
 
 /// Places for squares of one unit, aligned to pixels (8 per unit). The squares neither touch each other nor leave the
 /// picture while they move by up to two units.
-osg::Matrixd placeOf(int index)
+osg::Matrixd squarePlace(int index)
 {
     return osg::Matrixd::translate(index % 2 ? 0.5 : -4.0, 0.0, -3.5 + 1.25 * (index / 2));
 }
@@ -42,7 +42,7 @@ osg::ref_ptr<AnimatedCrowd> crowdOf(int count, bool isTinted = false, const osg:
 {
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
     for (int index = 0; index < count; ++index)
-        EXPECT_TRUE(crowd->add(placeOf(index) * osg::Matrixd::translate(origin), controllerOf(index),
+        EXPECT_TRUE(crowd->add(squarePlace(index) * osg::Matrixd::translate(origin), controllerOf(index),
                                osg::Vec4(isTinted ? 1.0f - static_cast<float>(index) / 16.0f : 1.0f, 1, 1, 1)));
     return crowd;
 }
@@ -54,7 +54,7 @@ osg::ref_ptr<osg::Group> makeCharacters(int first, int end)
     {
         osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
         character->getController() = controllerOf(index);
-        character->setMatrix(placeOf(index));
+        character->setMatrix(squarePlace(index));
         group->addChild(character);
     }
     return group;
@@ -62,7 +62,7 @@ osg::ref_ptr<osg::Group> makeCharacters(int first, int end)
 
 // A crowd multiplies its root matrices into the palette, so positions differ in their last bits. An edge between two
 // pixels may cover either one: 8 pixels per edge.
-constexpr int edgePixels = 16;
+constexpr int squareEdges = 16;
 
 class AnimatedCrowdGLTest : public ViewerGLTest
 {
@@ -98,10 +98,11 @@ TEST_F(AnimatedCrowdGLTest, looksLikeSeparateCharactersAtTheSameTimes)
     const osg::ref_ptr<osg::Image> crowd = pictureOf(crowdOf(12), times);
     EXPECT_GT(picture().pixelsDrawn(), 9 * 64);
     const osg::ref_ptr<osg::Image> characters = pictureOf(makeCharacters(0, 12), times);
-    EXPECT_LE(Picture::pixelsDifferent(*crowd, *characters), edgePixels);
+    EXPECT_LE(Picture::pixelsDifferent(*crowd, *characters), squareEdges);
     const osg::ref_ptr<osg::Group> beside = makeCharacters(6, 12);
     beside->addChild(crowdOf(6));
-    EXPECT_LE(Picture::pixelsDifferent(*pictureOf(beside, {0.0, 0.5}), *pictureOf(crowdOf(12), {0.0, 0.5})), edgePixels)
+    EXPECT_LE(Picture::pixelsDifferent(*pictureOf(beside, {0.0, 0.5}), *pictureOf(crowdOf(12), {0.0, 0.5})),
+              squareEdges)
         << "half of them a crowd";
 }
 
@@ -113,7 +114,7 @@ TEST_F(AnimatedCrowdGLTest, drawsAndFeedbackDoNotGrowWithTheInstances)
     {
         osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
         for (int index = 0; index < count; ++index)
-            ASSERT_TRUE(crowd->add(placeOf(index % 12), controllerOf(index % 2)));
+            ASSERT_TRUE(crowd->add(squarePlace(index % 12), controllerOf(index % 2)));
         viewer().setSceneData(crowd);
         drawAt(0);
         drawAt(0.25);
@@ -199,7 +200,7 @@ TEST_F(AnimatedCrowdGLTest, farOutItKeepsItsPlaceToThePixel)
     const osg::ref_ptr<osg::Image> here = pictureOf(crowdOf(12), {0.0, 0.5});
     viewer().getCamera()->setViewMatrixAsLookAt(far + osg::Vec3d(0, -10, 0), far, {0, 0, 1});
     const osg::ref_ptr<osg::Image> there = pictureOf(crowdOf(12, false, far), {0.0, 0.5});
-    EXPECT_LE(Picture::pixelsDifferent(*here, *there), edgePixels);
+    EXPECT_LE(Picture::pixelsDifferent(*here, *there), squareEdges);
 }
 
 TEST_F(AnimatedCrowdGLTest, aMillionInstancesOfWhichAFewAreSeen)
@@ -233,7 +234,7 @@ TEST_F(AnimatedCrowdGLTest, aMillionInstancesOfWhichAFewAreSeen)
 TEST_F(AnimatedCrowdGLTest, whatIsRemovedAfterItsCullIsDrawnOnceMore)
 {
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
-    const auto instances = addInstances(*crowd, {placeOf(0), placeOf(2), placeOf(4)}, still());
+    const auto instances = addInstances(*crowd, {squarePlace(0), squarePlace(2), squarePlace(4)}, still());
     osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
     character->setMatrix(osg::Matrixd::translate(1.0, 0.0, 0.0));
     osg::ref_ptr<osg::Group> root = new osg::Group;

@@ -87,11 +87,6 @@ osg::ref_ptr<AnimatedCharacter> makePainted()
     return character;
 }
 
-osg::ref_ptr<AnimatedCharacter> cloneOf(const AnimatedCharacter& character)
-{
-    return osg::clone(&character, osg::CopyOp::DEEP_COPY_NODES);
-}
-
 void pose(AnimatedCharacter& character, float red, bool isVisible)
 {
     show(character, {{"", {red}}, {"", {isVisible ? 1.0f : 0.0f}}});

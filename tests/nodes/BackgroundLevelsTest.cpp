@@ -120,13 +120,13 @@ TEST(BackgroundLevelsTest, nodesWithTheSameMeshesShareThem)
 namespace
 {
 
-struct ChangeCase
+struct TubeChange
 {
     const char* name;
     std::function<void(TubeCrowd&)> change;
 };
 
-const ChangeCase changes[] = {
+const TubeChange tubeChanges[] = {
     {"vertices",
      [](TubeCrowd& tubes)
      {
@@ -160,7 +160,7 @@ const ChangeCase changes[] = {
 // The thread works on copies: ThreadSanitizer sees whether.
 TEST(BackgroundLevelsTest, theApplicationMayChangeTheMeshesMeanwhile)
 {
-    for (const ChangeCase& each : changes)
+    for (const TubeChange& each : tubeChanges)
     {
         SCOPED_TRACE(each.name);
         TubeCrowd tubes;

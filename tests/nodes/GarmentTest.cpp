@@ -115,11 +115,6 @@ osg::ref_ptr<AnimatedCharacter> makeBody(bool hasMorph = false)
     return body;
 }
 
-osg::ref_ptr<AnimatedCharacter> cloneOf(const AnimatedCharacter& character)
-{
-    return osg::clone(&character, osg::CopyOp::DEEP_COPY_NODES);
-}
-
 SkinnedGeometry& meshAt(const osg::Group& group, unsigned int child)
 {
     return dynamic_cast<SkinnedGeometry&>(*const_cast<osg::Node*>(group.getChild(child)));

@@ -65,7 +65,7 @@ const DressCase dresses[] = {
 };
 
 /// Two rows and three columns of three units.
-osg::Matrixd placeOf(std::size_t index)
+osg::Matrixd cellPlace(std::size_t index)
 {
     return osg::Matrixd::translate(index % 2 ? 0.5 : -4.0, 0, -3.5 + 1.25 * static_cast<double>(index / 2));
 }
@@ -93,7 +93,7 @@ protected:
                 EXPECT_TRUE(hasError(controller.crossfade("turn", 4.0), ""));
             }
             const AnimatedCrowd::Instance instance =
-                crowd->add(placeOf(i), controller, i == 0 ? osg::Vec4(0.5f, 1, 1, 1) : osg::Vec4(1, 1, 1, 1)).value();
+                crowd->add(cellPlace(i), controller, i == 0 ? osg::Vec4(0.5f, 1, 1, 1) : osg::Vec4(1, 1, 1, 1)).value();
             if (i + 1 < count && isOneCrowd)
             {
                 const osg::ref_ptr<Outfit> outfit = makeOutfit(dresses[i].dress, dresses[i].name);
@@ -143,7 +143,7 @@ protected:
         for (std::size_t i = 0; i < 240; ++i)
         {
             const AnimatedCrowd::Instance instance =
-                crowd->add(placeOf(i % 12), playing("shift", 0.01 * static_cast<double>(i))).value();
+                crowd->add(cellPlace(i % 12), playing("shift", 0.01 * static_cast<double>(i))).value();
             if (outfits == 0) continue;
             EXPECT_TRUE(hasError(crowd->setOutfit(instance, worn[i % outfits]), ""));
         }

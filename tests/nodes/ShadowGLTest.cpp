@@ -81,7 +81,7 @@ private:
 
 // Shadow edges lie between the depth map's texels. Techniques fit that map to the clip's bounds for a character and to
 // the current bounds for plain geometry: two vertical edges of 64 pixels.
-constexpr int edgePixels = 128;
+constexpr int shadowEdges = 128;
 // ViewDependentShadowMap leaves the fixed pipeline's ambient light in the shadows on plain geometry; here they are
 // black.
 constexpr float ambient = 0.1f;
@@ -93,10 +93,10 @@ TEST_P(ShadowGLTest, aCharacterCastsAndReceivesLikePlainGeometryInItsPose)
     {
         const osg::ref_ptr<osg::Image> expected = pictureOf(bakedAt(time), time);
         const osg::ref_ptr<osg::Image> found = pictureOf(makePanelCharacter(), time);
-        EXPECT_LE(Picture::pixelsDifferent(*expected, *found, ambient), edgePixels) << time;
+        EXPECT_LE(Picture::pixelsDifferent(*expected, *found, ambient), shadowEdges) << time;
         const osg::ref_ptr<osg::Image> without = pictureOf(makePanelCharacter(), time, nullptr);
-        EXPECT_GT(Picture::pixelsDifferent(*without, *found, 0.1f), edgePixels) << time;
-        EXPECT_GE(Picture::pixelsDifferent(*start, *found, 0.1f), time > 0 ? edgePixels : 0) << time;
+        EXPECT_GT(Picture::pixelsDifferent(*without, *found, 0.1f), shadowEdges) << time;
+        EXPECT_GE(Picture::pixelsDifferent(*start, *found, 0.1f), time > 0 ? shadowEdges : 0) << time;
     }
 }
 
@@ -130,7 +130,7 @@ TEST_P(ShadowGLTest, shadowsDarkenTheLightsOfPbrSurfacesAlone)
             others += after < least - 0.02f;
         }
     EXPECT_GT(inShadow, 50);
-    EXPECT_LE(others, edgePixels);
+    EXPECT_LE(others, shadowEdges);
 }
 
 TEST_P(ShadowGLTest, aCrowdCastsAndReceivesToo)
@@ -145,7 +145,7 @@ TEST_P(ShadowGLTest, aCrowdCastsAndReceivesToo)
     expected->addChild(bakedAt(1.5));
     expected->addChild(beside);
     beside->addChild(bakedAt(1.5));
-    EXPECT_LE(Picture::pixelsDifferent(*pictureOf(expected, 1.5), *pictureOf(crowd, 1.5), ambient), 2 * edgePixels);
+    EXPECT_LE(Picture::pixelsDifferent(*pictureOf(expected, 1.5), *pictureOf(crowd, 1.5), ambient), 2 * shadowEdges);
 }
 
 /// Counts the mesh's draws with programs for depth only and with programs for colour.
@@ -174,7 +174,7 @@ TEST_P(ShadowGLTest, theDepthPassHasTheLeanProgram)
 }
 
 template <typename Technique>
-osgShadow::ShadowTechnique* make()
+osgShadow::ShadowTechnique* makeTechnique()
 {
     return new Technique;
 }
@@ -189,13 +189,13 @@ osgShadow::ShadowTechnique* makeShadowMap()
 
 INSTANTIATE_TEST_SUITE_P(
     Techniques, ShadowGLTest,
-    ::testing::Values(TechniqueCase{"ShadowMap", makeShadowMap},
-                      TechniqueCase{"ViewDependentShadowMap", make<osgShadow::ViewDependentShadowMap>},
-                      TechniqueCase{"StandardShadowMap", make<osgShadow::StandardShadowMap>},
-                      TechniqueCase{"LightSpacePerspectiveShadowMap",
-                                    make<osgShadow::LightSpacePerspectiveShadowMapVB>},
-                      TechniqueCase{"ParallelSplitShadowMap", make<osgShadow::ParallelSplitShadowMap>, true, 2},
-                      TechniqueCase{"SoftShadowMap", make<osgShadow::SoftShadowMap>}),
+    ::testing::Values(
+        TechniqueCase{"ShadowMap", makeShadowMap},
+        TechniqueCase{"ViewDependentShadowMap", makeTechnique<osgShadow::ViewDependentShadowMap>},
+        TechniqueCase{"StandardShadowMap", makeTechnique<osgShadow::StandardShadowMap>},
+        TechniqueCase{"LightSpacePerspectiveShadowMap", makeTechnique<osgShadow::LightSpacePerspectiveShadowMapVB>},
+        TechniqueCase{"ParallelSplitShadowMap", makeTechnique<osgShadow::ParallelSplitShadowMap>, true, 2},
+        TechniqueCase{"SoftShadowMap", makeTechnique<osgShadow::SoftShadowMap>}),
     [](const auto& info) { return std::string(info.param.name); });
 
 /// osgShadow's technique, which fits the camera of its map to the bounds of the scene.

@@ -139,10 +139,10 @@ struct Dog : Swinging
 
 /// VRMC_springBone 1.0, "SpringBone Algorithm", for the dog's tail, in double precision. It takes the poses of the body
 /// from a controller of its own.
-class Reference
+class ReferenceChain
 {
 public:
-    Reference(const Dog& dog, const std::vector<SpringCollider>& colliders)
+    ReferenceChain(const Dog& dog, const std::vector<SpringCollider>& colliders)
         : _dog(dog), _colliders(colliders), _controller(dog.character->getController())
     {
         _controller.layer(0).seek(0.0);
@@ -286,7 +286,7 @@ TEST(SpringBonesTest, theTailSwingsAsInTheSpecification)
             each->place->setMatrix(osg::Matrixd::rotate(1.0, osg::Vec3d(0, 0, 1)) * osg::Matrixd::translate(40, -7, 3));
         dog.updateTo(0.0);
         free.updateTo(0.0);
-        Reference reference(dog, colliders);
+        ReferenceChain reference(dog, colliders);
         double worst = 0.0;
         for (int frame = 1; frame <= 600; ++frame)
         {

@@ -21,7 +21,7 @@ namespace
 using Threading = osgViewer::ViewerBase::ThreadingModel;
 
 /// Several characters and a crowd at their own speeds.
-osg::ref_ptr<osg::Group> makeScene()
+osg::ref_ptr<osg::Group> makeCharactersAndCrowd()
 {
     osg::ref_ptr<osg::Group> group = new osg::Group;
     for (int i = 0; i < 4; ++i)
@@ -80,7 +80,7 @@ protected:
     /// The picture at 2.3 seconds, drawn in one context and one thread.
     osg::ref_ptr<osg::Image> expectedPicture()
     {
-        viewer().setSceneData(makeScene());
+        viewer().setSceneData(makeCharactersAndCrowd());
         drawAt(0);
         drawAt(2.3);
         EXPECT_GT(picture().pixelsDrawn(), 200);
@@ -125,10 +125,10 @@ TEST_P(TwoContextsGLTest, aSlaveCameraOnAContextOfItsOwnShowsTheSameUnderEveryTh
     both.setSceneData(scene);
     both.realize();
     // Adds the scene after the contexts exist and after another scene was added and removed.
-    scene->addChild(makeScene()->getChild(0));
+    scene->addChild(makeCharactersAndCrowd()->getChild(0));
     both.frame(0);
     scene->removeChildren(0, 1);
-    scene->addChild(makeScene());
+    scene->addChild(makeCharactersAndCrowd());
     both.frame(0); // clips start here
     int frame = 0;
     // Changes the threading model at run time; each model draws a few frames and ends with the compared time.
@@ -163,8 +163,8 @@ TEST_F(ViewersGLTest, contextsThatShareEvaluateTheirOwnCharactersWithoutErrors)
         composite.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
         const osg::ref_ptr<osg::GraphicsContext> first = makeContext();
         const osg::ref_ptr<osg::GraphicsContext> contexts[] = {first, makeContext(first)};
-        const osg::ref_ptr<Picture> pictures[] = {addView(composite, makeScene(), contexts[0]),
-                                                  addView(composite, makeScene(), contexts[1])};
+        const osg::ref_ptr<Picture> pictures[] = {addView(composite, makeCharactersAndCrowd(), contexts[0]),
+                                                  addView(composite, makeCharactersAndCrowd(), contexts[1])};
         draw(composite);
         for (unsigned int i = 0; i < 2; ++i)
         {
@@ -196,7 +196,7 @@ TEST_F(ViewersGLTest, nothingIsDynamicThatIsDrawn)
         }
         int drawables = 0, dynamic = 0;
     } visitor;
-    makeScene()->accept(visitor);
+    makeCharactersAndCrowd()->accept(visitor);
     EXPECT_EQ(visitor.drawables, 5);
     EXPECT_EQ(visitor.dynamic, 0);
 }
@@ -204,7 +204,7 @@ TEST_F(ViewersGLTest, nothingIsDynamicThatIsDrawn)
 TEST_F(ViewersGLTest, aWindowIsClosedAndOpenedAgainOverOneScene)
 {
     const osg::ref_ptr<osg::Image> expected = expectedPicture();
-    osg::ref_ptr<osg::Group> scene = makeScene();
+    osg::ref_ptr<osg::Group> scene = makeCharactersAndCrowd();
     osgViewer::Viewer other;
     other.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
     for (int round = 0; round < 3; ++round)
@@ -225,7 +225,7 @@ TEST_F(ViewersGLTest, anotherViewersFrameOfTheSameNumberHasItsOwnCharactersAlone
 {
     std::uint64_t evaluated[2] = {};
     unsigned int contextIds[2] = {};
-    const osg::ref_ptr<osg::Node> scenes[] = {makeScene(), makeScene()};
+    const osg::ref_ptr<osg::Node> scenes[] = {makeCharactersAndCrowd(), makeCharactersAndCrowd()};
     for (const int round : {0, 1})
     {
         osg::ref_ptr<osg::GraphicsContext> window = makeContext();

@@ -4,6 +4,8 @@
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/authoring/ClipBuilder.h>
 
+#include <glm/gtc/constants.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,7 +17,6 @@ namespace osgGpuAnimation
 namespace
 {
 
-const double pi = std::acos(-1.0);
 constexpr double hipHeight = 0.9, bone = 0.45, ankleHeight = 0.08, toeHeight = 0.02, footLength = 0.14;
 
 double smooth(double share)
@@ -36,8 +37,8 @@ FootPose footAt(double phase)
     const double lift = 0.45 * smooth((phase - Walker::heelOff) / (Walker::duty - Walker::heelOff));
     if (phase < Walker::duty) return {footLength + length * (0.5 - phase / Walker::duty), toeHeight, lift};
     const double swing = (phase - Walker::duty) / (1.0 - Walker::duty);
-    return {footLength + length * (smooth(swing) - 0.5), toeHeight + 0.1 * std::pow(std::sin(pi * swing), 2.0),
-            0.45 * (1.0 - smooth(2.0 * swing))};
+    return {footLength + length * (smooth(swing) - 0.5),
+            toeHeight + 0.1 * std::pow(std::sin(glm::pi<double>() * swing), 2.0), 0.45 * (1.0 - smooth(2.0 * swing))};
 }
 
 /// The angles about +X of thigh, shank, foot and toes.

@@ -61,19 +61,19 @@ osg::ref_ptr<osg::Node> inGarment(const osg::ref_ptr<osg::Node>& model)
     return model;
 }
 
-struct Kind
+struct ModelKind
 {
     const char* name;
     const char* file;
     osg::ref_ptr<osg::Node> (*changed)(const osg::ref_ptr<osg::Node>& model); ///< null: as the file is
 };
 
-void PrintTo(const Kind& kind, std::ostream* out)
+void PrintTo(const ModelKind& kind, std::ostream* out)
 {
     *out << kind.name;
 }
 
-const Kind kinds[] = {
+const ModelKind modelKinds[] = {
     {"Skinned", "arm.gltf", nullptr},       {"Morphing", "morph.gltf", nullptr},
     {"Still", "stone.gltf", nullptr},       {"Crowd", "arm.gltf.3x3.crowd", nullptr},
     {"Studio", "arm.gltf.studio", nullptr}, {"Environment", "arm.gltf", inPanorama},
@@ -106,7 +106,7 @@ osg::ref_ptr<osg::Node> makeHost(int bin, bool usesLists)
     return quad;
 }
 
-class JoiningModelsGLTest : public ViewerGLTest, public ::testing::WithParamInterface<Kind>
+class JoiningModelsGLTest : public ViewerGLTest, public ::testing::WithParamInterface<ModelKind>
 {
 protected:
     JoiningModelsGLTest()
@@ -177,7 +177,7 @@ TEST_P(JoiningModelsGLTest, leavesTheHostAsItIs)
         }
 }
 
-INSTANTIATE_TEST_SUITE_P(OfEachKind, JoiningModelsGLTest, ::testing::ValuesIn(kinds),
+INSTANTIATE_TEST_SUITE_P(OfEachKind, JoiningModelsGLTest, ::testing::ValuesIn(modelKinds),
                          [](const auto& info) { return std::string(info.param.name); });
 
 } // namespace

@@ -19,7 +19,7 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
 /// See modelFile(); how many files of poses below oracle/ have a name that begins with the asset's.
 using OracleCase = std::pair<std::string, std::size_t>;
@@ -27,7 +27,7 @@ using OracleCase = std::pair<std::string, std::size_t>;
 class OraclePosesTest : public ::testing::TestWithParam<OracleCase>
 {
 protected:
-    void compareNodes(const json& frame, const ImportedModel& model, const ModelVertices& pose) const
+    void compareNodes(const Json& frame, const ImportedModel& model, const ModelVertices& pose) const
     {
         for (std::size_t node = 0; node < frame["nodes"].size(); ++node)
         {
@@ -38,7 +38,7 @@ protected:
         }
     }
 
-    void compareMatrix(const json& expected, const AffineMatrix& found) const
+    void compareMatrix(const Json& expected, const AffineMatrix& found) const
     {
         double linear = 1.0;
         double length = modelSize;
@@ -56,13 +56,13 @@ protected:
         }
     }
 
-    void comparePrimitives(const json& frame, const ImportedModel& model, const ModelVertices& pose) const
+    void comparePrimitives(const Json& frame, const ImportedModel& model, const ModelVertices& pose) const
     {
         ASSERT_EQ(poses["primitives"].size(), model.primitives.size());
         for (std::size_t index = 0; index < model.primitives.size(); ++index)
         {
             const ImportedPrimitive& primitive = model.primitives[index];
-            const json& about = poses["primitives"][index];
+            const Json& about = poses["primitives"][index];
             SCOPED_TRACE("primitive " + std::to_string(index));
             ASSERT_EQ(about["node"], primitive.node);
             ASSERT_EQ(about["primitive"], primitive.primitives->front());
@@ -84,7 +84,7 @@ protected:
         }
     }
 
-    void comparePoint(const json& expected, const glm::dvec3& found) const
+    void comparePoint(const Json& expected, const glm::dvec3& found) const
     {
         for (int axis = 0; axis < 3; ++axis)
             ASSERT_NEAR(expected[axis].get<double>(), found[axis], tolerance * modelSize) << "axis " << axis;
@@ -102,10 +102,10 @@ protected:
             EXPECT_NEAR(poses["clip"]["duration"].get<double>(), model.set->clips()[clip].duration(), 1e-6);
         }
         std::map<int, std::vector<double>> fixedWeights;
-        for (const json& fixed : poses["fixedWeights"])
+        for (const Json& fixed : poses["fixedWeights"])
             fixedWeights[fixed["node"]] = fixed["weights"].get<std::vector<double>>();
         ASSERT_FALSE(poses["frames"].empty());
-        for (const json& frame : poses["frames"])
+        for (const Json& frame : poses["frames"])
         {
             SCOPED_TRACE("time " + frame["time"].dump() + " (" + frame["label"].get<std::string>() + ")");
             const ModelVertices pose(model, clip, frame["time"], fixedWeights);
@@ -114,7 +114,7 @@ protected:
         }
     }
 
-    json poses;
+    Json poses;
     double modelSize = 1.0, tolerance = 1e-5;
 };
 
@@ -134,7 +134,7 @@ TEST_P(OraclePosesTest, everyFrameIsWhatTheSpecificationSays)
         if (name.rfind(nameOfFile(GetParam().first) + '.', 0) != 0 || entry.path().extension() != ".json") continue;
         SCOPED_TRACE(name);
         ++posings;
-        poses = json::parse(readBytes(entry.path().string()));
+        poses = Json::parse(readBytes(entry.path().string()));
         modelSize = poses["modelSize"];
         tolerance = 1e-5; // float32 throughout; the tolerance of the poses' own comparison program
         if (poses.contains("ambiguity") && poses["ambiguity"].is_object())

@@ -164,7 +164,7 @@ std::string levels(bool isMoving)
 }
 
 /// A .glb with its first animation alone; empty: the file is not here.
-std::string bytesOf(const std::string& model)
+std::string modelBytes(const std::string& model)
 {
     if (modelFile(model).empty()) return "";
     GlbParts parts(readBytes(modelFile(model)));
@@ -193,11 +193,11 @@ std::vector<NamesCase> namesCases()
         {"still meshes named as other nodes", meshesNamedAsOtherNodes(false), {{"Box", 1}, {"Lid", 1}, {"Same", 1}}},
         {"a node without a name", nodeWithoutName(), {{"Sphere", 1}}},
         {"an instanced node", instancedStone(), {{"Stone", 1}, {"Rock", 0}}},
-        {"MaterialBalls", bytesOf("MaterialBalls.glb"), {{"BeatenCopper", 1}, {"Metallic100Roughness0", 1}}},
-        {"Wanderer", bytesOf("Wanderer.glb"), {{"Lantern", 2}, {"Body", 1}}},
-        {"Serpent", bytesOf("Serpent.glb"), {{"Body", 2}}},
+        {"MaterialBalls", modelBytes("MaterialBalls.glb"), {{"BeatenCopper", 1}, {"Metallic100Roughness0", 1}}},
+        {"Wanderer", modelBytes("Wanderer.glb"), {{"Lantern", 2}, {"Body", 1}}},
+        {"Serpent", modelBytes("Serpent.glb"), {{"Body", 2}}},
         {"People",
-         bytesOf("People.glb"),
+         modelBytes("People.glb"),
          {{"Body", 5},
           {"Hair", 1},
           {"Hood", 1},
@@ -212,15 +212,15 @@ std::vector<NamesCase> namesCases()
           {"Basket", 2},
           {"Staff", 1}}},
         {"Knight",
-         bytesOf("assets/Knight/Knight.glb"),
+         modelBytes("assets/Knight/Knight.glb"),
          {{"1H_Sword", 1},
           {"1H_Sword_Offhand", 1},
           {"Knight_Helmet", 1},
           {"Knight_Body", 1},
           {"Cube.124", 0},
           {"PrototypePete_body.020", 0}}},
-        {"Fox", bytesOf("assets/Fox/Fox.glb"), {{"fox", 1}, {"fox1", 0}}},
-        {"CesiumMan", bytesOf("assets/CesiumMan/CesiumMan.glb"), {{"Cesium_Man", 1}}}};
+        {"Fox", modelBytes("assets/Fox/Fox.glb"), {{"fox", 1}, {"fox1", 0}}},
+        {"CesiumMan", modelBytes("assets/CesiumMan/CesiumMan.glb"), {{"Cesium_Man", 1}}}};
 }
 
 using PartNamesGLTest = ViewerGLTest;
@@ -328,8 +328,8 @@ TEST_F(PartNamesGLTest, aHostsSwitchHidesThePart)
     file.quad("Sword", 2, 0, white, body);
     moving(file, body);
     const std::pair<std::string, const char*> models[] = {{file.text(), "Sword"},
-                                                          {bytesOf("Wanderer.glb"), "Lantern"},
-                                                          {bytesOf("assets/Knight/Knight.glb"), "1H_Sword"}};
+                                                          {modelBytes("Wanderer.glb"), "Lantern"},
+                                                          {modelBytes("assets/Knight/Knight.glb"), "1H_Sword"}};
     for (const auto& [bytes, part] : models)
     {
         SCOPED_TRACE(part);

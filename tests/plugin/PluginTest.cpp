@@ -25,7 +25,7 @@ namespace
 
 using PluginTest = PseudoLoaderTest;
 
-struct FaultCase
+struct ModelFault
 {
     const char* name;
     const char* file;
@@ -33,7 +33,7 @@ struct FaultCase
     const char* message;
 };
 
-const FaultCase faults[] = {
+const ModelFault modelFaults[] = {
     {"a folder", "folder.gltf", "", "folder"},
     {"empty", "empty.glb", "", "empty"},
     {"cut off", "cut.gltf", "", ""},
@@ -151,7 +151,7 @@ TEST_F(PluginTest, faultsHaveAMessage)
     folder.write("empty.glb", "");
     folder.write("cut.gltf", arm.text().substr(0, 200));
     folder.write("lost.gltf", R"({"asset":{"version":"2.0"},"buffers":[{"uri":"lost.bin","byteLength":4}]})");
-    for (const FaultCase& fault : faults)
+    for (const ModelFault& fault : modelFaults)
     {
         SCOPED_TRACE(fault.name);
         expectError(fault.file, fault.options, fault.message);

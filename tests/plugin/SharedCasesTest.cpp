@@ -31,7 +31,7 @@ struct SharedCase
 
 const std::string orderFault = "animations[0] \"wave\".channels[1]: accessors[7]: expected times that increase, found ";
 
-const SharedCase cases[] = {
+const SharedCase sharedCases[] = {
     {"gltf_byte_weights_254", "wave", 1.0, {99.5, 0, 0}, {100.5, 2, 0}, {}},
     {"gltf_empty_animation",
      "wave",
@@ -54,7 +54,7 @@ const SharedCase cases[] = {
 
 TEST(SharedCasesTest, verticesAreWhereTheFilesSay)
 {
-    for (const SharedCase& one : cases)
+    for (const SharedCase& one : sharedCases)
     {
         SCOPED_TRACE(one.file);
         const std::string name = std::string("cases/") + one.file + ".gltf";

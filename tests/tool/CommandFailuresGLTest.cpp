@@ -117,6 +117,7 @@ const Failure failures[] = {
     {"render flag.gltf -o out/x.png --environment wide.png --look sun", "", "--look excludes --environment"},
     {"render missing.glb -o out/x.png", "missing.glb", "no such file"},
     {"render missing.png -o out/x.png", "missing.png", "there is no such file"},
+    {"render cut.osgb.90,0,0.rot -o out/x.png", "cut.osgb.90,0,0.rot", "OSG cannot read it"},
     {"render flag.gltf.studio -o out/x.png", "flag.gltf.studio", "osggpuanim render flag.gltf`"},
     {"render flag.gltf.0x2.crowd -o out/x.png", "flag.gltf.0x2.crowd", "a crowd of 0x2 is empty"},
     {"render clips.gltf -o out/kept.png", "clips.gltf", "there is nothing to draw"},

@@ -40,7 +40,7 @@ void leaveOut(const JsonValue& object, const JsonValue& member, const std::strin
 }
 
 /// The element loses its members and keeps its place.
-void empty(const JsonValue& element, const Error& why, Report& report)
+void emptyElement(const JsonValue& element, const Error& why, Report& report)
 {
     report.warn(why.message + "; the element is left out");
     element.dropMembers();
@@ -79,7 +79,7 @@ void leaveOutGaps(const JsonValue& attributes, const PrimitiveName& name, Report
 }
 
 /// Makes a primitive undrawable: no attributes, no indices, the same number of targets, all empty.
-void empty(const JsonValue& primitive)
+void emptyPrimitive(const JsonValue& primitive)
 {
     primitive["attributes"].dropMembers();
     for (const JsonValue& target : primitive["targets"])
@@ -98,7 +98,7 @@ void checkPrimitive(const JsonValue& primitive, const PrimitiveName& name, Repor
         leaveOutUnknown(targetAttributes, name, target++, report);
     if (attributes["POSITION"]) return;
     report.warn(name.attributes() + ": expected POSITION, found none; the primitive is not drawn");
-    empty(primitive);
+    emptyPrimitive(primitive);
 }
 
 std::optional<Error> checkDraco(const JsonValue& primitive, const PrimitiveName& name)
@@ -132,7 +132,7 @@ void checkMappings(const JsonValue& mappings, const std::string& name, Report& r
         for (const JsonValue& variant : mapping["variants"])
         {
             if (taken.count(variant.number()) == 0 && own.insert(variant.number()).second) continue;
-            empty(mapping, fault(place, "each variant once", variant.description() + " again"), report);
+            emptyElement(mapping, fault(place, "each variant once", variant.description() + " again"), report);
             own.clear();
             break;
         }
@@ -297,8 +297,8 @@ void checkCameras(const JsonValue& cameras, Report& report)
         if (!type) continue;
         const JsonValue view = camera[type.text()], height = view["ymag"];
         if (view && !(height && height.number() == 0.0)) continue;
-        empty(camera, fault(name + '.' + std::string(type.text()), "the size of the view", height.description()),
-              report);
+        emptyElement(camera, fault(name + '.' + std::string(type.text()), "the size of the view", height.description()),
+                     report);
     }
 }
 
@@ -313,7 +313,7 @@ void checkLights(const JsonValue& lights, Report& report)
         const JsonValue type = light["type"], spot = light["spot"];
         const JsonValue inner = spot["innerConeAngle"], outer = spot["outerConeAngle"];
         if (type && type.text() == "spot" && !spot)
-            empty(light, fault(name, "an object", "nothing"), report);
+            emptyElement(light, fault(name, "an object", "nothing"), report);
         else if (inner && inner.number() >= (outer ? outer.number() : defaultOuterAngle))
             leaveOut(spot, inner, name, "expected an angle below outerConeAngle, found " + inner.description(), report);
     }

@@ -23,8 +23,8 @@ std::optional<Error> checkSchema(const JsonValue& document, Report& report);
 /// extensions, members that exclude or need each other, attributes of primitives, samplers and targets of animation
 /// channels, views of cameras, cones of lights, variants of mappings. The document has passed checkSchema().
 /// Dispensable faulty members are left out with a warning; a channel that is left out keeps its place, without a
-/// target; a camera, light or mapping as in checkSchema(). Returns the first fault that the document must be refused
-/// for.
+/// target; of a camera, light or mapping an empty object stays. Returns the first fault that the document must be
+/// refused for.
 std::optional<Error> checkDocumentRules(const JsonValue& document, Report& report);
 
 } // namespace osgGpuAnimation::gltf

@@ -86,7 +86,7 @@ inline std::string quoted(const std::string& text) // not std::quoted
 
 /// The same without the quotation marks.
 std::string printable(std::string_view text, std::size_t max = 80);
-/// See quotedNames().
+/// quotedNames() of the names, each made printable.
 std::string namesText(std::vector<std::string> names);
 /// The shortest text that reads back as the number: 8, 0.5, 1e+30.
 std::string numberText(double number);

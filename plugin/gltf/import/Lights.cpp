@@ -77,7 +77,7 @@ std::vector<std::size_t> nearest(const tinygltf::Model& model, const NodeTree& t
 
 } // namespace
 
-const char* typeOf(PunctualLight::Kind kind)
+const char* lightTypeName(PunctualLight::Kind kind)
 {
     if (kind == PunctualLight::Kind::Directional) return "directional";
     return kind == PunctualLight::Kind::Spot ? "spot" : "point";

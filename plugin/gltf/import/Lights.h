@@ -24,8 +24,8 @@ struct ImportedLight
     osg::ref_ptr<osg::LightSource> source; ///< named after the light, else the node; null: beyond OpenGL's lights
 };
 
-/// The name of KHR_lights_punctual for it.
-const char* typeOf(PunctualLight::Kind kind);
+/// The light's type in KHR_lights_punctual.
+const char* lightTypeName(PunctualLight::Kind kind);
 
 /// The lights at the visible nodes of the drawn part, by node, without sources.
 std::vector<ImportedLight> findLights(const tinygltf::Model& model, const NodeTree& tree);

@@ -32,7 +32,7 @@ const std::vector<LoftRing> coatRings = {
     wandererCoatRing(0.760, 0.186, 0.156, 0.150), wandererCoatRing(0.690, 0.208, 0.174, 0.172),
     wandererCoatRing(0.625, 0.226, 0.190, 0.190)};
 
-void addCoat(CharacterMesh& mesh)
+void addWandererCoat(CharacterMesh& mesh)
 {
     std::vector<LoftRing> rings = refined(coatRings, 2);
     rings.push_back(wandererCoatRing(0.612, 0.226, 0.190, 0.190)); // the hem's edge, then up again inside
@@ -194,7 +194,7 @@ LoftRing wandererCoatAt(double height)
 
 void addWandererBody(CharacterMesh& mesh)
 {
-    addCoat(mesh);
+    addWandererCoat(mesh);
     addWandererBoots(mesh, wandererPaint::boot, wandererPaint::sole);
     addWandererSleeves(mesh, wandererPaint::sleeve);
     addWandererTrousers(mesh, wandererPaint::trousers);

@@ -29,7 +29,7 @@ Part turned(const std::vector<Turning>& outline)
     return loft(rings, 12, rigidBinder(0));
 }
 
-Part handle()
+Part lanternHandle()
 {
     const double radius = 0.066;
     std::vector<LoftRing> rings;
@@ -71,7 +71,7 @@ int addWandererLantern(GltfDocument& document)
     const int mesh = document.addMesh("Lantern");
 
     PrimitiveArrays frame;
-    appendPart(frame, handle());
+    appendPart(frame, lanternHandle());
     appendPart(frame, turned({{-0.062, 0.0}, {-0.062, 0.012}, {-0.080, 0.016}, {-0.092, 0.010}}));
     appendPart(
         frame,

@@ -34,7 +34,7 @@ void addLights(osgUtil::PositionalStateContainer& container, const osg::Matrixd&
 }
 
 // Vectors of coreState in light.glsl.
-constexpr std::size_t ofScene = 4, ofLight = 6;
+constexpr std::size_t sceneVectors = 4, lightVectors = 6;
 
 void setLight(osg::Vec4* numbers, const osg::Light& light, const osg::Matrixd& toEye)
 {
@@ -129,7 +129,7 @@ void setFixedPipelineUniforms(osg::State& state, unsigned int lights)
     const auto* material = applied<osg::Material>(state, osg::StateAttribute::MATERIAL);
     osg::Vec4 shine = material ? material->getSpecular(osg::Material::FRONT) : osg::Vec4();
     shine.w() = material ? material->getShininess(osg::Material::FRONT) : 0.0f;
-    std::array<osg::Vec4, ofScene + ofLight * ViewLights::lightCount> numbers{
+    std::array<osg::Vec4, sceneVectors + lightVectors * ViewLights::lightCount> numbers{
         model ? model->getAmbientIntensity() : osg::Vec4(0.2f, 0.2f, 0.2f, 1.0f), shine};
     if (const auto* fog = applied<osg::Fog>(state, osg::StateAttribute::FOG))
     {
@@ -137,9 +137,9 @@ void setFixedPipelineUniforms(osg::State& state, unsigned int lights)
         numbers[3] =
             osg::Vec4(fog->getDensity(), fog->getStart(), fog->getEnd(), 1.0f / (fog->getEnd() - fog->getStart()));
     }
-    std::size_t count = ofScene;
+    std::size_t count = sceneVectors;
     const LightList placed = lights != 0 ? ViewLights::of(state) : LightList();
-    for (std::size_t i = 0; lights >> i != 0; ++i, count += ofLight)
+    for (std::size_t i = 0; lights >> i != 0; ++i, count += lightVectors)
         if (placed[i].light && (lights & (1u << i)) != 0) setLight(&numbers[count], *placed[i].light, placed[i].toEye);
     state.get<osg::GLExtensions>()->glUniform4fv(location, static_cast<GLsizei>(count), numbers[0].ptr());
 }

@@ -85,13 +85,11 @@ Result<gltf::ImportedModel> importFile(const std::string& fileName, const gltf::
 /// True for a file's name, and for one that a pseudo-loader takes: a file's name and more extensions.
 bool beginsWithFile(std::string name)
 {
+    std::string longer;
     std::error_code failure;
-    while (!std::filesystem::exists(name, failure))
-        if (const std::string shorter = osgDB::getNameLessExtension(name); shorter != name)
-            name = shorter;
-        else
-            return false;
-    return true;
+    while (!std::filesystem::exists(name, failure) && name != longer)
+        longer = std::exchange(name, osgDB::getNameLessExtension(name));
+    return name != longer;
 }
 
 /// Names for OSG's pseudo-loaders are no files: `fox.glb.studio` shows `fox.glb`.

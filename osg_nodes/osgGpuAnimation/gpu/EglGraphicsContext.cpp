@@ -74,15 +74,12 @@ EGLDisplay openDevice()
     return EGL_NO_DISPLAY;
 }
 
-EGLDisplay openDefault()
-{
-    return started(eglGetDisplay(EGL_DEFAULT_DISPLAY));
-}
-
 EGLDisplay openAny()
 {
     static constexpr std::pair<const char*, EGLDisplay (*)()> platforms[]{
-        {"surfaceless", openSurfaceless}, {"device", openDevice}, {"default", openDefault}};
+        {"surfaceless", openSurfaceless},
+        {"device", openDevice},
+        {"default", [] { return started(eglGetDisplay(EGL_DEFAULT_DISPLAY)); }}};
     const char* wanted = std::getenv("OSGGPUANIMATION_EGL_PLATFORM");
     for (const auto& [name, open] : platforms)
     {

@@ -14,16 +14,11 @@ using namespace json;
 namespace
 {
 
-bool isHex(const std::string& text)
-{
-    return text.find_first_not_of("0123456789abcdefABCDEF") == std::string::npos;
-}
-
 osg::Vec4 toColor(const Json& json, const std::string& where)
 {
     expect(json.is_string(), where, "a string", json);
     const std::string text = json.get<std::string>();
-    if (text.size() != 7 || text[0] != '#' || !isHex(text.substr(1)))
+    if (text.size() != 7 || text[0] != '#' || text.find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos)
         throw JsonFault{where + ": \"" + text + "\" is no colour like \"#7a5c3a\""};
     const unsigned long rgb = std::stoul(text.substr(1), nullptr, 16);
     const auto channel = [rgb](int shift) { return static_cast<float>(rgb >> shift & 255u) / 255.0f; };

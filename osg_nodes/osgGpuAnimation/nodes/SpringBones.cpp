@@ -172,12 +172,6 @@ glm::dmat4 toMatrix(const JointTransform& transform, const glm::dquat& rotation)
     return matrix;
 }
 
-/// The shortest turn from one direction to another.
-glm::dquat turnBetween(const glm::dvec3& from, const glm::dvec3& to)
-{
-    return glm::dquat(glm::normalize(from), glm::normalize(to));
-}
-
 /// From a to b by the share: translation and scale linearly, rotation by slerp.
 osg::Matrixd between(const osg::Matrixd& a, const osg::Matrixd& b, double share)
 {
@@ -398,7 +392,8 @@ private:
                   tail.now = next;
                   const glm::dvec3 scaled = bone.tail * glm::dvec3(local.scale);
                   const glm::dvec3 wanted = glm::inverse(glm::dmat3(above)) * (next - head);
-                  const glm::dquat rotation = turnBetween(atRest * scaled, wanted) * atRest;
+                  const glm::dquat shortest(glm::normalize(atRest * scaled), glm::normalize(wanted));
+                  const glm::dquat rotation = shortest * atRest;
                   return _rotations[index] = std::isfinite(glm::dot(rotation, rotation)) ? rotation : atRest;
               });
     }

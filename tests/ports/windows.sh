@@ -186,7 +186,7 @@ def read(system):
 
 difference = deltaE_ciede2000(read("linux"), read("windows"))
 print(f"osgviewer.exe beside osgviewer: mean dE00 {difference.mean():.3f}, highest {difference.max():.1f}")
-sys.exit(difference.mean() > 1)
+sys.exit(bool(difference.mean() > 1))  # of a numpy.bool_ it would print "False" and fail
 PYTHON
 )
 

@@ -4,7 +4,7 @@
 # Makes a bare Debian of that name in build-NAME/ from the mirrors that apt has here, copies this tree and ../shared into
 # it, and runs scenes/view.sh and, without `view`, tests/run.sh there, as a user would; with `packages`, it makes the Debian
 # packages instead, in build-NAME/src/osgGpuAnimation/build-deb/. What build-NAME/ has already is kept and used again. Needs
-# root, mmdebstrap and git. Exit status 0: all passed. Sid changes daily, so its result has a date.
+# root. Exit status 0: all passed. Sid changes daily, so its result has a date.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../setup.sh"
 
@@ -42,6 +42,7 @@ inside()
         env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root "${passed[@]}" "$@"
 }
 
+install_missing mmdebstrap git
 if [ ! -d "$folder/src" ]; then # which is made last
     rm -rf "$folder"
     mkdir -p "$folder"

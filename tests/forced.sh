@@ -15,19 +15,21 @@ export OSGGPUANIMATION_REQUIRE_GL=1
 faults=0
 ran=0
 
-# run WAY FILTER VARIABLE...
+# run WAY FILTER VARIABLE...: each suite in a process of its own; another context of a process may find OSG's GL objects
+# of an earlier one.
 run()
 {
-    local program log count before=$ran
+    local program log tests passed before=$ran
     log=$(mktemp)
     for program in "${programs[@]}"; do
-        if ! env "${@:3}" "$folder/$program" --gtest_filter="$2" >"$log" 2>&1; then
-            faults=$((faults + 1))
-            cat "$log"
-        fi
-        count=$(sed -nE 's/^\[=+\] Running ([0-9]+) tests? from.*/\1/p;T;q' "$log")
-        ran=$((ran + ${count:-0}))
-        echo "$1, $program: $(grep -aE '^\[  (PASSED|FAILED)  \] [0-9]+ test' "$log" | paste -sd' ')"
+        passed=0
+        while read -r tests; do
+            env "${@:3}" "$folder/$program" --gtest_filter="$tests" </dev/null >"$log" 2>&1 || { faults=$((faults + 1)) && cat "$log"; }
+            passed=$((passed + $(grep -acE '^\[       OK \] ' "$log" || true)))
+            ran=$((ran + $(grep -acE '^\[ RUN      \] ' "$log" || true)))
+        done < <("$folder/$program" --gtest_list_tests --gtest_filter="$2" |
+            awk '/^[^ ]/ {suite = $1} /^ / {of[suite] = of[suite] ":" suite $1} END {for (suite in of) print substr(of[suite], 2)}')
+        echo "$1, $program: $passed passed"
     done
     rm -f "$log"
     [ "$ran" -gt "$before" ] || { echo "$1: no test ran"; faults=$((faults + 1)); }
@@ -35,9 +37,10 @@ run()
 
 # glslangValidator reads the same programs in each way.
 gl='*GLTest*-ShaderLanguageGLTest.*'
-run texels "$gl" OSGGPUANIMATION_MAX_TEXELS=65536
+# The keyframes of ../shared's Knight need 128,197 texels.
+run texels "$gl:Models/*/Knight*" OSGGPUANIMATION_MAX_TEXELS=65536
 # Mesa makes a context of the one profile where the other one is asked for.
 lacks=MESA_EXTENSION_OVERRIDE='-GL_ARB_base_instance -GL_ARB_timer_query -GL_ARB_buffer_storage'
 run gl33 "$gl:*Core*:Profile*" MESA_GL_VERSION_OVERRIDE=3.3COMPAT "$lacks"
-run gl33core '*Core*GLTest*:*Profile*GLTest*:*.seesALesserDriver' MESA_GL_VERSION_OVERRIDE=3.3 "$lacks"
+run gl33core '*Core*GLTest*:*Profile*GLTest*:*.seesALesserDriver-*Core45' MESA_GL_VERSION_OVERRIDE=3.3 "$lacks"
 [ $faults -eq 0 ]

@@ -99,12 +99,12 @@ Result<Scene> read(const std::string& file, const gltf::ImportOptions& options)
     return added ? scene : Result<Scene>(added.error());
 }
 
-Result<std::string> glbOf(const osg::Node& scene, const std::string& file)
+Result<std::string> glbOf(const osg::Node& scene, const std::string& file, const std::string& output)
 {
     gltf::Messages messages;
     gltf::Report report(messages);
-    const Result<std::string> bytes = gltf::exportModel(scene, report);
-    printWarnings(file, messages);
+    const Result<std::string> bytes = exportScene(scene, file, report);
+    printWarnings(output, messages);
     return bytes;
 }
 
@@ -175,9 +175,8 @@ Result<void> ConvertCommand::run() const
     const Result<Scene> scene = read(file, options);
     if (!scene) return Error{file + ": " + scene.error().message};
     const Result<std::string> bytes =
-        extension == "glb" ? glbOf(*scene.value(), output) : osgFileOf(*scene.value(), extension);
-    if (!bytes)
-        return Error{output + ": " + bytes.error().message + (extension == "glb" ? missingSerializers(file) : "")};
+        extension == "glb" ? glbOf(*scene.value(), file, output) : osgFileOf(*scene.value(), extension);
+    if (!bytes) return Error{output + ": " + bytes.error().message};
     const Result<void> saved = gltf::saveFile(output, bytes.value());
     if (!saved) return Error{output + ": " + saved.error().message};
     return {};

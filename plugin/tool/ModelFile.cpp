@@ -56,9 +56,7 @@ Result<std::string> readGltf(const std::string& fileName, const gltf::ImportOpti
     if (!isSceneFormat(fileName)) return gltf::readModelFile(fileName, options);
     const Result<osg::ref_ptr<osg::Node>> scene = readScene(fileName, report);
     if (!scene) return scene.error();
-    const Result<std::string> bytes = gltf::exportModel(*scene.value(), report);
-    if (!bytes) return Error{bytes.error().message + missingSerializers(fileName)};
-    return bytes;
+    return exportScene(*scene.value(), fileName, report);
 }
 
 /// messages: takes those of the file, also before an error.
@@ -108,8 +106,7 @@ Error noSuchFile(const std::string& fileName)
     return Error{"there is no such file"};
 }
 
-} // namespace
-
+/// For messages: what a stored scene may lack.
 std::string missingSerializers(const std::string& fileName)
 {
     const std::string extension = osgDB::getLowerCaseFileExtension(fileName);
@@ -119,6 +116,8 @@ std::string missingSerializers(const std::string& fileName)
     if (std::filesystem::exists(osgDB::findLibraryFile(library))) return "";
     return "; characters need osgdb_serializers_osggpuanimation in the library path (OSG_LIBRARY_PATH)";
 }
+
+} // namespace
 
 Result<gltf::ImportOptions> importOptions(const ModelArguments& arguments)
 {
@@ -183,13 +182,19 @@ Result<osg::ref_ptr<osg::Node>> readScene(const std::string& fileName, gltf::Rep
     return scene;
 }
 
+Result<std::string> exportScene(const osg::Node& scene, const std::string& fileName, gltf::Report& report)
+{
+    const Result<std::string> bytes = gltf::exportModel(scene, report);
+    return bytes ? bytes : Error{bytes.error().message + missingSerializers(fileName)};
+}
+
 Result<gltf::ImportedModel> readModel(const std::string& fileName, const gltf::ImportOptions& options)
 {
     // Where there is no such file, the name may be one for a pseudo-loader.
     std::error_code failure;
     const bool isThere = std::filesystem::exists(fileName, failure);
-    const bool isForViewers = osgDB::getLowerCaseFileExtension(fileName) == "studio";
-    if (!isThere && (isForViewers || !isSceneFormat(fileName))) return noSuchFile(fileName);
+    if (!isThere && (osgDB::getLowerCaseFileExtension(fileName) == "studio" || !isSceneFormat(fileName)))
+        return noSuchFile(fileName);
     if (isThere)
         if (const Result<RegularFile> file = RegularFile::open(fileName); !file) return file.error();
 

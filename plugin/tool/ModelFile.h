@@ -32,12 +32,11 @@ void printClipWarnings(const std::string& file, const gltf::Messages& messages);
 /// True for names of files that readModel() reads, by their extension.
 bool isModelFormat(const std::string& fileName);
 
-/// For messages about a scene that OSG has stored: what it may lack. Begins with a semicolon; empty: nothing.
-std::string missingSerializers(const std::string& fileName);
-
 /// Reads a file with OSG's plugins. A warning says if it has characters of osgAnimation. Errors: the file does not
 /// exist, or no plugin reads it.
 Result<osg::ref_ptr<osg::Node>> readScene(const std::string& fileName, gltf::Report& report);
+/// gltf::exportModel() of a scene of that file; an error also says what a stored scene may lack.
+Result<std::string> exportScene(const osg::Node& scene, const std::string& fileName, gltf::Report& report);
 
 /// Reads and imports a .gltf or .glb, a file of a format that Assimp reads where the build has it, or a scene that
 /// OSG's plugins read, which is exported to glTF first; in the file's own axes if options.noRotation says so. Errors:

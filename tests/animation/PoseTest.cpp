@@ -32,14 +32,6 @@ namespace osgGpuAnimation
 namespace
 {
 
-double difference(const glm::dmat4& a, const glm::dmat4& b)
-{
-    double worst = 0.0;
-    for (int c = 0; c < 4; ++c)
-        worst = std::max(worst, glm::length(a[c] - b[c]));
-    return worst;
-}
-
 std::shared_ptr<const AnimationSet> setOfTwoSkins(RandomCharacter& character)
 {
     const Skeleton skeleton = character.skeleton();
@@ -95,14 +87,12 @@ TEST(PoseTest, matricesAreWhatTheKeysSay)
                 const auto joint = static_cast<std::size_t>(set->skeleton().jointOfInput(j));
                 const glm::dmat4 wanted = someRoot().toColumns() * expected[j];
                 // Rounding on up to eight levels, scales of up to 1.5 * 1.4^8.
-                EXPECT_LE(difference(joints[joint].toColumns(), wanted),
-                          5e-5 * (1 + difference(wanted, glm::dmat4(0))));
+                EXPECT_LE(distance(joints[joint].toColumns(), wanted), 5e-5 * (1 + distance(wanted, glm::dmat4(0))));
                 for (std::size_t s = 0; s < 2; ++s)
                 {
                     const glm::dmat4 entry = wanted * set->skins()[s].inverseBinds[joint].toColumns();
                     const auto index = static_cast<std::size_t>(set->entryOfSkin(s, joint));
-                    EXPECT_LE(difference(palette[index].toColumns(), entry),
-                              5e-6 * (1 + difference(entry, glm::dmat4(0))));
+                    EXPECT_LE(distance(palette[index].toColumns(), entry), 5e-6 * (1 + distance(entry, glm::dmat4(0))));
                 }
             }
             for (std::size_t morph = 0; morph < character.morphs.size(); ++morph)

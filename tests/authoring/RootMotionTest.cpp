@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/math/Rotation.h>
 
 #include "support/ClipSets.h"
+#include "support/PaletteDifference.h"
 #include "support/Results.h"
 #include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/AnimationSet.h>
@@ -82,14 +83,6 @@ std::shared_ptr<const AnimationSet> makeSet(const std::vector<Gait>& gaits)
 std::shared_ptr<const AnimationSet> stripped(const AnimationSet& set, const RootMotionAxes& axes)
 {
     return valueOf(withRootMotion(set, "hips", axes));
-}
-
-double worstColumn(const glm::dmat4& a, const glm::dmat4& b)
-{
-    double worst = 0.0;
-    for (int c = 0; c < 4; ++c)
-        worst = std::max(worst, glm::length(a[c] - b[c]));
-    return worst;
 }
 
 TEST(RootMotionTest, aThousandLoopsDoNotDriftAtAnyFrameRate)
@@ -394,8 +387,8 @@ TEST(RootMotionTest, anyParentsAxesAndFirstPoseKeepTheOldPose)
             };
             AnimationController walker = playing(left, 0);
             walker.advance(0.5);
-            EXPECT_LE(worstColumn(AnimationController(walker).takeRootMotion().matrix(),
-                                  left->clips()[0].rootMotionAt(0.5).matrix()),
+            EXPECT_LE(distance(AnimationController(walker).takeRootMotion().matrix(),
+                               left->clips()[0].rootMotionAt(0.5).matrix()),
                       1e-9)
                 << "about the same axis";
             const glm::dmat4 first = hipsAt(*left, 0.0);
@@ -405,7 +398,7 @@ TEST(RootMotionTest, anyParentsAxesAndFirstPoseKeepTheOldPose)
                 const glm::dmat4 rest = hipsAt(*left, time);
                 const glm::dmat4 again = left->clips()[0].rootMotionAt(time).matrix() * rest;
                 const bool isKey = step % 4 == 0 || !axes.yaw;
-                EXPECT_LE(worstColumn(again, hipsAt(*whole, time)), isKey ? 2e-5 : isSpline ? 2e-3 : 4e-3) << step;
+                EXPECT_LE(distance(again, hipsAt(*whole, time)), isKey ? 2e-5 : isSpline ? 2e-3 : 4e-3) << step;
                 if (step % 4 != 0) continue;
                 const glm::dvec3 moved = glm::dvec3(rest[3] - first[3]);
                 const double along = glm::dot(moved, up);

@@ -25,11 +25,9 @@ constexpr const char* usage = R"(osggpuanim_benchmark [options] OUTPUT_FOLDER FI
     measures this kit against osgAnimation with the characters of glTF files, prints a table and writes benchmark.json
     into the folder
     --quick           fewer characters and rounds
-    --only PART       pose, samples, constraints, chunks, compact, depth, frames, crowd, outfits, separate, field, mixed, pictures,
-                      draws, shading, start, memory, load or gpu (gpu.md and gpu.json: the choices that a GPU decides); several
-                      times, too
+    --only PART       one of the parts below (gpu writes gpu.md and gpu.json: the choices that a GPU decides); several times, too
     --return-memory   leave it to glibc whether freed memory goes back to the kernel
-)";
+Parts: )";
 
 struct Request
 {
@@ -52,12 +50,18 @@ constexpr std::pair<const char*, void (*)(const Subject&, Run&)> parts[] = {
     {"shading", measureShading},   {"start", measureStart},
     {"memory", measureMemory},     {"load", measureLoad}};
 
+std::vector<std::string> partNames()
+{
+    std::vector<std::string> names{"depth", "mixed", "gpu"}; // of no one file
+    for (const auto& [name, function] : parts)
+        names.push_back(name);
+    return names;
+}
+
 /// Says which of the parts of --only do not exist.
 bool checkParts(const Request& request)
 {
-    std::vector<std::string> known{"depth", "mixed", "gpu"}; // of no one file
-    for (const auto& [name, function] : parts)
-        known.push_back(name);
+    const std::vector<std::string> known = partNames();
     for (const std::string& part : request.parts)
         if (std::find(known.begin(), known.end(), part) == known.end())
         {
@@ -185,7 +189,7 @@ int main(int count, char** words)
     Request request;
     if (!parse(count, words, request))
     {
-        std::cerr << usage;
+        std::cerr << usage << osgGpuAnimation::quotedNames(partNames()) << std::endl;
         return 2;
     }
     try

@@ -58,6 +58,15 @@ inline double distance(const JointTransform& a, const JointTransform& b)
          static_cast<double>(glm::distance(a.scale, b.scale))});
 }
 
+/// The largest distance of two columns.
+inline double distance(const glm::dmat4& a, const glm::dmat4& b)
+{
+    double worst = 0.0;
+    for (int column = 0; column < 4; ++column)
+        worst = std::max(worst, glm::length(a[column] - b[column]));
+    return worst;
+}
+
 /// The largest distance between the corners of the boxes in two palettes of a set, in the model's units.
 inline double largestDistance(const AnimationSet& set, const std::vector<AffineMatrix>& a,
                               const std::vector<AffineMatrix>& b, const EntryBoxes& boxes)

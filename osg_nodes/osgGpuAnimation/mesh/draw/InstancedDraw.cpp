@@ -20,11 +20,6 @@ namespace osgGpuAnimation
 namespace
 {
 
-bool isOf(const osg::VertexArrayState& arrays, const osg::State& state)
-{
-    return arrays.getVertexArrayObject() != 0 && arrays._state == &state;
-}
-
 /// OSG confuses a new array with a deleted one at the same address.
 void forgetArrays(osg::VertexArrayState& arrays)
 {
@@ -77,7 +72,8 @@ void drawElements(osg::State& state, const osg::DrawElements& elements, int coun
 } // namespace
 
 MeshVertexArrays::MeshVertexArrays(osg::State& state)
-    : _state(state), _isContextsOwn(!isOf(*state.getCurrentVertexArrayState(), state))
+    : _state(state), _isContextsOwn(state.getCurrentVertexArrayState()->getVertexArrayObject() == 0 ||
+                                    state.getCurrentVertexArrayState()->_state != &state)
 {
     if (!_isContextsOwn) return;
     // A later context with the same number finds the object of the first.

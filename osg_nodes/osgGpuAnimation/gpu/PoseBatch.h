@@ -51,8 +51,12 @@ public:
     std::size_t add(const PoseInstruction& instruction, const AffineMatrix& rootMatrix);
     /// Does the same for a pose of one sample.
     std::size_t addSample(const BlendSample& sample, const AffineMatrix& rootMatrix);
-    /// Adds a pose of one sample without a root matrix of its own.
-    std::size_t addSample(const BlendSample& sample) { return append(&sample, 1, nullptr); }
+    /// Adds a pose of BlendCost::Plain, with an alpha in [0, 1], to a batch of such poses without root matrices.
+    void addPlain(const BlendSample& sample)
+    {
+        _samples.push_back(sample);
+        ++_size;
+    }
 
     /// The cost of mixing a pose.
     enum class BlendCost

@@ -90,10 +90,12 @@ public:
             const BlendSample* poses = nullptr;
             for (std::uint64_t bits = shown.bits; bits != 0; bits &= bits - 1, ++number)
             {
-                const std::size_t place = 64 * word + countTrailingZeros(bits);
+                const unsigned int step = countTrailingZeros(bits);
+                const std::size_t place = 64 * word + step;
+                shown.ranks[step] = static_cast<std::uint8_t>(number - shown.before);
                 if (!poses) poses = _meshes.clips[_storage.clips[place / stepsOfClip]].poses.data();
                 if (number % maxPoses == 0) batches.push_back(function());
-                batches.back()->addSample(poses[place % stepsOfClip]);
+                batches.back()->addPlain(poses[place % stepsOfClip]);
             }
         }
         return batches;
@@ -116,9 +118,9 @@ public:
             PlacedInstances::Drawn* end = out.data() + first;
             for (const PlacedInstances::Drawn& instance : shown)
             {
-                const std::uint32_t place = instance.pose;
+                const ShownSteps& steps = _storage.shown[instance.pose / 64];
                 const std::uint32_t pose =
-                    _storage.shown[place / 64].numberOf(place % 64) - static_cast<std::uint32_t>(firstPose);
+                    steps.before + steps.ranks[instance.pose % 64] - static_cast<std::uint32_t>(firstPose);
                 *end = {pose, instance.instance};
                 end += pose < poseCount;
             }
@@ -137,22 +139,12 @@ private:
         Shown* shown;  ///< null: the band is new
         float ofLevel; ///< the error of the level of detail
     };
-    /// The shown ones of 64 steps, and the number of poses before them.
+    /// The shown ones of 64 steps.
     struct ShownSteps
     {
-        std::uint64_t bits;
-        std::uint32_t before;
-
-        /// The number of the pose of a shown step.
-        std::uint32_t numberOf(std::uint32_t step) const
-        {
-            // Counts bits: a table of numbers would not fit the caches, and not every processor has an instruction.
-            std::uint64_t count = bits & ((std::uint64_t(1) << step) - 1);
-            count -= count >> 1 & 0x5555555555555555u;
-            count = (count & 0x3333333333333333u) + (count >> 2 & 0x3333333333333333u);
-            count = (count + (count >> 4)) & 0x0F0F0F0F0F0F0F0Fu;
-            return before + static_cast<std::uint32_t>(count * 0x0101010101010101u >> 56);
-        }
+        std::uint64_t bits = 0;
+        std::uint32_t before = 0;             ///< the number of poses before them
+        std::array<std::uint8_t, 64> ranks{}; ///< of the shown ones: 0, 1, 2 …
     };
     static constexpr std::ptrdiff_t blockSize = 128; ///< members
     /// A member that shares its pose.
@@ -288,7 +280,7 @@ private:
         {
             first = static_cast<std::uint32_t>(_storage.clips.size() * stepsOfClip);
             _storage.clips.push_back(static_cast<std::uint32_t>(clip));
-            _storage.shown.resize(_storage.shown.size() + stepsOfClip / 64, {0, 0});
+            _storage.shown.resize(_storage.shown.size() + stepsOfClip / 64);
         }
         return first;
     }

@@ -89,6 +89,7 @@ protected:
     void expectSamePoses(const std::function<osg::ref_ptr<osg::Node>()>& make, std::size_t clipCount)
     {
         const osg::ref_ptr<osg::Node> node = make();
+        ASSERT_TRUE(node);
         const osganimation::Conversion converted = osganimation::convertOsgAnimation(*node);
         ASSERT_EQ(converted.characters.size(), 1u);
         AnimatedCharacter& character = *converted.characters.front();

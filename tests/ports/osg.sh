@@ -52,8 +52,8 @@ build_osg()
     local plugins=("${formats[@]/#/osgdb_}" osgdb_osgshadow osgdb_deprecated_osg{,animation}
         osgdb_serializers_osg{,animation,viewer,shadow,fx})
     # A path that CMake writes into a library ends with an empty element, the current folder.
-    local options=(-DBUILD_OSG_APPLICATIONS=OFF -DBUILD_OSG_PLUGINS_BY_DEFAULT=OFF -DBUILD_OSG_PLUGIN_SHADOW=ON -DCMAKE_SKIP_RPATH=ON
-        -Wno-dev)
+    local options=(-DBUILD_OSG_APPLICATIONS=OFF -DBUILD_OSG_PLUGINS_BY_DEFAULT=OFF -DBUILD_OSG_PLUGIN_SHADOW=ON
+        -DCMAKE_SKIP_RPATH=ON -Wno-dev)
     case $variant in
         core) options+=(-DOPENGL_PROFILE=GLCORE) ;;
         float) options+=(-DOSG_USE_FLOAT_{MATRIX,PLANE,QUAT}=ON) ;;

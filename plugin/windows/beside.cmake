@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: MIT
 # CPack runs this before it makes the ZIP. It copies OSG's viewer, converter, libraries and plugins, and all libraries that
-# these and ours need except the system's, beside the programs.
+# these and ours need except the system's, beside the programs. The target package_source has no programs.
+if(CPACK_INSTALLED_DIRECTORIES)
+    return()
+endif()
 set(programs "${CPACK_TEMPORARY_DIRECTORY}/${CPACK_PROGRAMS}")
 file(INSTALL "${CPACK_OSG_FOLDER}/bin/osgviewer.exe" "${CPACK_OSG_FOLDER}/bin/osgconv.exe" DESTINATION "${programs}" OPTIONAL)
 file(INSTALL "${CPACK_OSG_FOLDER}/bin/" DESTINATION "${programs}" FILES_MATCHING PATTERN *.dll)

@@ -62,7 +62,7 @@ double nextRandomShare(std::uint32_t seed)
     static std::mutex mutex;
     static std::map<std::uint32_t, std::mt19937> generators;
     const std::lock_guard<std::mutex> lock(mutex);
-    return generators.try_emplace(seed, seed).first->second() * 0x1p-32;
+    return static_cast<double>(generators.try_emplace(seed, seed).first->second()) * 0x1p-32;
 }
 
 /// The index in the set of the clip to play first; -1: there is none.

@@ -205,8 +205,8 @@ void setInfluences(SkinnedGeometry& mesh, const std::vector<VertexWeights>& weig
         for (std::size_t vertex = 0; vertex < weights.size(); ++vertex)
             for (std::size_t i = 4 * set; i < std::min<std::size_t>(weights[vertex].size(), 4 * set + 4); ++i)
             {
-                (*entries)[vertex][i - 4 * set] = weights[vertex][i].first;
-                (*shares)[vertex][static_cast<int>(i - 4 * set)] = weights[vertex][i].second;
+                (*entries)[vertex][static_cast<unsigned int>(i % 4)] = weights[vertex][i].first;
+                (*shares)[vertex][static_cast<int>(i % 4)] = weights[vertex][i].second;
             }
         mesh.setInfluences(set, entries, shares);
     }

@@ -38,9 +38,9 @@ osg::ref_ptr<osg::Node> makeGround()
         {
             const double x = side * (column / double(cells) - 0.5), y = side * (row / double(cells) - 0.5);
             constexpr double step = 1e-3;
-            places->push_back(osg::Vec3(x, y, heightAt(x, y)));
-            osg::Vec3 normal((heightAt(x - step, y) - heightAt(x + step, y)) / (2.0 * step),
-                             (heightAt(x, y - step) - heightAt(x, y + step)) / (2.0 * step), 1.0);
+            places->push_back(osg::Vec3d(x, y, heightAt(x, y)));
+            osg::Vec3 normal = osg::Vec3d((heightAt(x - step, y) - heightAt(x + step, y)) / (2.0 * step),
+                                          (heightAt(x, y - step) - heightAt(x, y + step)) / (2.0 * step), 1.0);
             normal.normalize();
             normals->push_back(normal);
             const unsigned int corner = row * (cells + 1) + column;
@@ -223,7 +223,7 @@ Result<osg::ref_ptr<osg::Node>> makeGazers(const osg::Node& model)
         const double shade = between(0.7, 1.0);
         const auto instance =
             crowd->add(osg::Matrixd::rotate(facing, osg::Vec3d(0, 0, 1)) * osg::Matrixd::translate(place), controller,
-                       osg::Vec4(shade, shade * between(0.9, 1.0), shade * between(0.8, 1.0), 1.0));
+                       osg::Vec4d(shade, shade * between(0.9, 1.0), shade * between(0.8, 1.0), 1.0));
         if (!instance) return instance.error();
         if (const Result<void> followed = crowd->constraint(instance.value(), "look").follow(bird); !followed)
             return followed.error();

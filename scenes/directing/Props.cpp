@@ -57,7 +57,7 @@ osg::ref_ptr<osg::Group> makeLantern()
     for (int i = 0; i < bars; ++i)
     {
         const double angle = 2.0 * osg::PI * i / bars;
-        const osg::Vec3 place(0.075 * std::cos(angle), 0.075 * std::sin(angle), -0.005);
+        const osg::Vec3d place(0.075 * std::cos(angle), 0.075 * std::sin(angle), -0.005);
         lantern->addChild(makePart(new osg::Cylinder(place, 0.007f, 0.18f), brass));
     }
     return lantern;
@@ -92,8 +92,8 @@ osg::ref_ptr<osg::Group> makeRamp(double angle, const osg::Vec3d& place)
     const osg::ref_ptr<osg::Group> ramp = new osg::Group;
     for (int i = 0; i < stripes; ++i)
     {
-        const osg::Vec3 middle((i + 0.5) * stripe - length / 2.0, 0.0, -thickness / 2.0);
-        ramp->addChild(makePart(new osg::Box(middle, stripe, 0.7f, thickness),
+        const osg::Vec3d middle((i + 0.5) * stripe - length / 2.0, 0.0, -thickness / 2.0);
+        ramp->addChild(makePart(new osg::Box(middle, static_cast<float>(stripe), 0.7f, static_cast<float>(thickness)),
                                 i % 2 == 0 ? osg::Vec4(0.3f, 0.5f, 0.55f, 1.0f) : osg::Vec4(0.75f, 0.82f, 0.8f, 1.0f),
                                 rising));
     }

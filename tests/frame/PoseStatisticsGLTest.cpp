@@ -100,7 +100,7 @@ TEST_F(PoseStatisticsGLTest, countsAndTimeAreRecordedWhileStatsAreOn)
     drawAt(0.1);
     EXPECT_EQ(recorded(PoseStatistics::charactersSeen), 3.0);
     EXPECT_EQ(recorded(PoseStatistics::charactersEvaluated), 3.0);
-    EXPECT_EQ(recorded(PoseStatistics::jointsSeen), 3.0 * testCharacterSet()->skeleton().jointCount());
+    EXPECT_EQ(recorded(PoseStatistics::jointsSeen), 3 * testCharacterSet()->skeleton().jointCount());
     drawAt(0.1);
     EXPECT_EQ(recorded(PoseStatistics::charactersEvaluated), 0.0) << "nothing had changed";
     EXPECT_EQ(recorded(PoseStatistics::charactersSeen), 3.0);
@@ -144,7 +144,7 @@ TEST_F(PoseStatisticsGLTest, eachCharacterCountsOnceForAllCamerasAndBatches)
     {
         drawAt(time);
         EXPECT_EQ(recorded(PoseStatistics::charactersSeen), 5.0 + 6.0) << time;
-        EXPECT_EQ(recorded(PoseStatistics::jointsSeen), 11.0 * testCharacterSet()->skeleton().jointCount()) << time;
+        EXPECT_EQ(recorded(PoseStatistics::jointsSeen), 11 * testCharacterSet()->skeleton().jointCount()) << time;
     }
 }
 

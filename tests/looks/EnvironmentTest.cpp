@@ -266,8 +266,8 @@ const KeyLightCase keyLightCases[] = {
     {"the higher of two",
      [](const osg::Vec3f& d)
      {
-         const float lamps = (d * direction(1, 1, 0) > 0.995f) + (d * direction(-4, 1, 0) > 0.995f);
-         return osg::Vec3f(1, 1, 1) * (lamps > 0.0f ? 50.0f : 0.1f);
+         const bool isLit = d * direction(1, 1, 0) > 0.995f || d * direction(-4, 1, 0) > 0.995f;
+         return osg::Vec3f(1, 1, 1) * (isLit ? 50.0f : 0.1f);
      },
      direction(1, 1, 0), 0.6f, 0.75f},
 };

@@ -71,7 +71,7 @@ void setArrays(osg::Geometry& mesh)
     mesh.setVertexArray(positions);
     mesh.setNormalArray(normals);
     mesh.setTexCoordArray(0, coordinates, osg::Array::BIND_PER_VERTEX);
-    osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array(osg::Array::BIND_PER_VERTEX, positions->size());
+    osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array(osg::Array::BIND_PER_VERTEX, positions->getNumElements());
     std::fill(colors->begin(), colors->end(), osg::Vec4(1, 1, 1, 1));
     mesh.setColorArray(colors);
     mesh.addPrimitiveSet(indices);
@@ -83,7 +83,7 @@ osg::ref_ptr<osg::Geometry> baked(const SkinnedGeometry& mesh, const std::vector
     mesh.computePositions(palette, computed);
     osg::ref_ptr<osg::Vec3Array> positions = new osg::Vec3Array;
     for (const glm::dvec3& position : computed)
-        positions->push_back(osg::Vec3(position.x, position.y, position.z));
+        positions->push_back(osg::Vec3(osg::Vec3d(position.x, position.y, position.z)));
     osg::ref_ptr<osg::Geometry> result = new osg::Geometry;
     setArrays(*result);
     result->setVertexArray(positions);

@@ -208,7 +208,7 @@ TEST_F(PbrLightGLTest, theAmbientLightOfALampIsAttenuated)
     const float expected = colorOf(dielectric()).g(); // in a surrounding of 0.2
     setSurrounding(0);
     light->setAmbient(osg::Vec4(0.8f, 0.8f, 0.8f, 1));
-    light->setPosition(osg::Vec4(2 * position.x(), -4, 2 * position.y(), 2)); // 2 units before the panel
+    light->setPosition(osg::Vec4d(2 * position.x(), -4, 2 * position.y(), 2)); // 2 units before the panel
     light->setConstantAttenuation(0);
     light->setQuadraticAttenuation(1);
     EXPECT_NEAR(colorOf(dielectric()).g(), expected, 2.0f / 255);

@@ -213,8 +213,8 @@ TEST_F(ReadmeShadersGLTest, aProgramMayUseTheKitsLight)
         {
             const osg::ref_ptr<osg::LightSource> source = new osg::LightSource;
             source->getLight()->setLightNum(number);
-            source->getLight()->setPosition(osg::Vec4(1 - 3 * number, -2, 2, static_cast<float>(number)));
-            source->getLight()->setDiffuse(osg::Vec4(0.8f, 0.6f, number, 1));
+            source->getLight()->setPosition(osg::Vec4d(1 - 3 * number, -2, 2, number));
+            source->getLight()->setDiffuse(osg::Vec4d(0.8, 0.6, number, 1));
             scene->addChild(source);
             above.setMode(GL_LIGHT0 + static_cast<unsigned int>(number), osg::StateAttribute::ON);
         }

@@ -73,9 +73,9 @@ protected:
         {
             AnimationController controller(set);
             EXPECT_TRUE(controller.play(0));
-            controller.seek(0.001 * (random() % 1000));
-            const osg::Matrixd turned = osg::Matrixd::rotate(0.1 * (random() % 63), 1, 0, 0) *
-                                        osg::Matrixd::rotate(0.1 * (random() % 63), 0, 1, 0);
+            controller.seek(0.001 * static_cast<int>(random() % 1000));
+            const osg::Matrixd turned = osg::Matrixd::rotate(0.1 * static_cast<int>(random() % 63), 1, 0, 0) *
+                                        osg::Matrixd::rotate(0.1 * static_cast<int>(random() % 63), 0, 1, 0);
             const osg::Vec3d place(10.0 * (i % across) - 5.0 * across, 0.0, 10.0 * (i / across) - 5.0 * across);
             EXPECT_TRUE(crowd->add(turned * osg::Matrixd::translate(place), controller));
         }

@@ -219,7 +219,7 @@ TEST(CharacterLevelsTest, haveFewerTrianglesLevelByLevelAndTheFoundErrorOfAllVer
     const std::size_t keyPoseCount = poses.size();
     std::mt19937 random(5);
     for (int i = 0; i < 50; ++i)
-        poses.emplace_back().samples[0] = arm.set->sampleAt(0, 0.001 * (random() % 1000));
+        poses.emplace_back().samples[0] = arm.set->sampleAt(0, 0.001 * static_cast<int>(random() % 1000));
     const auto surfaceAt = [&](int level, const std::vector<AffineMatrix>& palette)
     { return ShownSurface(*arm.meshes, *arm.set, &levels, level, palette); };
     const auto trianglesAt = [&](int level) { return surfaceAt(level, arm.paletteAt(poses[0])).triangleCount(); };

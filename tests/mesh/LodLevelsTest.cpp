@@ -136,8 +136,8 @@ TEST(LodLevelsTest, keepTextureCoordinatesOnTheirSideOfASeam)
         for (unsigned int column = 0; column <= 20; ++column)
             for (unsigned int row = 0; row <= 20; ++row)
             {
-                positions->push_back(osg::Vec3(20.0f * half + column, row, 0));
-                texCoords->push_back(osg::Vec2(0.5f * half + 0.01f * column, 0.01f * row));
+                positions->push_back(osg::Vec3d(20.0 * half + column, row, 0));
+                texCoords->push_back(osg::Vec2d(0.5 * half + 0.01 * column, 0.01 * row));
                 if (column == 20 || row == 20) continue;
                 const unsigned int corner = half * 441 + column * 21 + row;
                 for (const unsigned int vertex : {0u, 21u, 1u, 1u, 21u, 22u})
@@ -201,7 +201,7 @@ osg::ref_ptr<SkinnedGeometry> makeDisc(unsigned int points, unsigned int rings)
         for (unsigned int point = 0; point < points; ++point)
         {
             const double angle = 2.0 * osg::PI * point / points, radius = 1.0 + ring;
-            positions->push_back(osg::Vec3(radius * std::cos(angle), radius * std::sin(angle), 0.0f));
+            positions->push_back(osg::Vec3d(radius * std::cos(angle), radius * std::sin(angle), 0.0));
             const unsigned int here = 1 + ring * points + point, next = 1 + ring * points + (point + 1) % points;
             for (const unsigned int corner : {ring == 0 ? 0 : here - points, here, next})
                 triangles->push_back(corner);

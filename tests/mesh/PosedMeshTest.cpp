@@ -116,7 +116,7 @@ TEST(PosedMeshTest, allIntersectorsNameTheDrawnMesh)
         const osg::ref_ptr<osgUtil::RayIntersector> ray =
             new osgUtil::RayIntersector(osg::Vec3d(x, -5, 0.4), osg::Vec3d(0, 1, 0));
         osg::Polytope box;
-        box.setToBoundingBox(osg::BoundingBox(x - 0.1f, -1, 0.3f, x + 0.1f, 1, 0.5f));
+        box.setToBoundingBox(osg::BoundingBox(osg::Vec3d(x - 0.1, -1, 0.3), osg::Vec3d(x + 0.1, 1, 0.5)));
         const osg::ref_ptr<osgUtil::PolytopeIntersector> polytope = new osgUtil::PolytopeIntersector(box);
         const osg::ref_ptr<osgUtil::PlaneIntersector> plane =
             new osgUtil::PlaneIntersector(osg::Plane(1, 0, 0, -x), box);

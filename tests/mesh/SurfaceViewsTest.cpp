@@ -109,7 +109,7 @@ TEST(SurfaceViewsTest, aCubeCoversSquaresAndRectangles)
         EXPECT_NEAR(glm::length(views.towards(view)), 1.0f, 1e-6f);
         const glm::vec3 along = glm::abs(views.towards(view));
         const bool isAlongAxis = std::max({along.x, along.y, along.z}) > 0.9f;
-        std::size_t count = 0;
+        int count = 0;
         for (const Seen& seen : views.seen(view, cube.surface()))
         {
             if (seen.triangle == Seen::none) continue;

@@ -45,9 +45,10 @@ osg::ref_ptr<SkinnedGeometry> makeTube(const AnimationSet& set)
         for (unsigned int row = 0; row < tubeRows; ++row)
         {
             const double x = 8.0 * column / tubeColumns, angle = 2.0 * osg::PI * row / tubeRows;
-            positions->push_back(osg::Vec3(x, 0.5 * std::cos(angle), 0.5 * std::sin(angle)));
+            positions->push_back(osg::Vec3d(x, 0.5 * std::cos(angle), 0.5 * std::sin(angle)));
             const float share = static_cast<float>(std::min(1.0, std::max(0.0, x - 3.5)));
-            entries->push_back(osg::Vec4us(set.entryOfSkin(0, 0), set.entryOfSkin(0, 1), 0, 0));
+            entries->push_back(osg::Vec4us(static_cast<GLushort>(set.entryOfSkin(0, 0)),
+                                           static_cast<GLushort>(set.entryOfSkin(0, 1)), 0, 0));
             weights->push_back(osg::Vec4(1.0f - share, share, 0, 0));
             if (column == tubeColumns) continue;
             const unsigned int next = (row + 1) % tubeRows;

@@ -126,7 +126,8 @@ TEST(AnimatedCrowdTest, removedInstancesAnswerAndTheOthersKeepTheirNames)
     std::vector<AnimatedCrowd::Instance> names;
     for (int i = 0; i < 5; ++i)
         names.push_back(
-            crowd->add(osg::Matrixd::translate(i, 0, 0), playing("shift", 0.3 * i), osg::Vec4(i % 2, 0, 1, 1)).value());
+            crowd->add(osg::Matrixd::translate(i, 0, 0), playing("shift", 0.3 * i), osg::Vec4d(i % 2, 0, 1, 1))
+                .value());
     EXPECT_TRUE(crowd->remove(names[1]));
     const AnimatedCrowd::Instance late = crowd->add(osg::Matrixd::translate(9, 0, 0), playing("turn")).value();
     EXPECT_NE(late, names[1]);
@@ -144,7 +145,7 @@ TEST(AnimatedCrowdTest, removedInstancesAnswerAndTheOthersKeepTheirNames)
     {
         const AnimatedCrowd::Instance name = names[static_cast<std::size_t>(i)];
         EXPECT_EQ(crowd->getPlacement(name).getTrans(), osg::Vec3d(i, 0, 0));
-        EXPECT_EQ(crowd->getTint(name), osg::Vec4(i % 2, 0, 1, 1));
+        EXPECT_EQ(crowd->getTint(name), osg::Vec4d(i % 2, 0, 1, 1));
         EXPECT_NEAR(timeOf(*crowd, name), 0.3 * i, 1e-9);
     }
     EXPECT_EQ(crowd->getPlacement(late).getTrans(), osg::Vec3d(9, 0, 0));

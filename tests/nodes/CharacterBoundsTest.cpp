@@ -151,7 +151,7 @@ TEST(CharacterBoundsTest, holdMorphWeightsThatLayersRaiseLowerAndPose)
             EXPECT_NEAR(positions.at(0).z, lift * c.weight, 1e-5);
             for (const glm::dvec3& position : positions)
                 for (const osg::BoundingBox& box : {character->getCurrentBounds(), square.getBoundingBox()})
-                    EXPECT_TRUE(box.contains(osg::Vec3(position.x, position.y, position.z))) << position.z;
+                    EXPECT_TRUE(box.contains(osg::Vec3d(position.x, position.y, position.z))) << position.z;
         }
 }
 

@@ -76,7 +76,7 @@ protected:
         const double half = osg::DegreesToRadians(15.0);
         const double distance = bound.radius() * side / (std::tan(half) * pixels) + bound.radius();
         camera.setProjectionMatrixAsPerspective(30.0, 1.0, 0.1 * bound.radius(), distance + 2.0 * bound.radius());
-        camera.setViewMatrixAsLookAt(bound.center() + osg::Vec3(0.3f, -1.0f, 0.4f) * (distance / std::sqrt(1.25)),
+        camera.setViewMatrixAsLookAt(bound.center() + osg::Vec3d(0.3, -1.0, 0.4) * (distance / std::sqrt(1.25)),
                                      bound.center(), {0, 0, 1});
     }
 

@@ -112,7 +112,7 @@ TEST_F(ReadmeTest, crowds)
     AnimationController controller(crowd->getSharedAnimationSet());
     succeeded(controller.play("Run"));
     controller.seek(0.4);
-    auto fox = crowd->add(osg::Matrix::translate(100, 20, 0), controller, osg::Vec4(1, 0.8, 0.8, 1));
+    auto fox = crowd->add(osg::Matrix::translate(100, 20, 0), controller, osg::Vec4(1, 0.8f, 0.8f, 1));
     ASSERT_TRUE(fox);
     if (succeeded(fox))
     {
@@ -515,7 +515,7 @@ TEST_F(ReadmeTest, outfits)
 
     osg::ref_ptr<Outfit> guard = new Outfit;
     guard->setVisible("Hood", false);
-    guard->setColor("Coat", osg::Vec4(0.5, 0.2, 0.2, 1));
+    guard->setColor("Coat", osg::Vec4(0.5f, 0.2f, 0.2f, 1));
     guard->setVariant("unlit");
     guard->setPicture("Pack", osgDB::readRefImageFile("lion.png"));
     guard->addProp("Head", osgDB::readRefNodeFile("helmet.glb"), osg::Matrix::translate(0, 0.1, 0));

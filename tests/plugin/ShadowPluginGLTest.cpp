@@ -27,7 +27,7 @@ protected:
         osg::Camera& camera = *viewer().getCamera();
         const double reach = bound.radius();
         camera.setProjectionMatrixAsOrtho(-reach, reach, -reach, reach, 0, 4 * reach);
-        camera.setViewMatrixAsLookAt(bound.center() + osg::Vec3(0.6f, -1.5f, 0.5f) * reach, bound.center(), {0, 0, 1});
+        camera.setViewMatrixAsLookAt(bound.center() + osg::Vec3d(0.6, -1.5, 0.5) * reach, bound.center(), {0, 0, 1});
         viewer().setLightingMode(osg::View::SKY_LIGHT);
         viewer().getLight()->setPosition(osg::Vec4(1, -0.5f, 0.7f, 0));
         return ViewerGLTest::pictureOf(scene, {0, time});

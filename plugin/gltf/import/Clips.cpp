@@ -57,7 +57,7 @@ std::vector<ClipMarker> readMarkers(const tinygltf::Value& extras, double begin,
     if (!markers.IsArray()) report.warn(subject + ".extras.markers: no array; markers skipped");
     for (std::size_t i = 0; markers.IsArray() && i < markers.ArrayLen(); ++i)
     {
-        const tinygltf::Value& marker = markers.Get(i);
+        const tinygltf::Value& marker = markers.Get(static_cast<int>(i));
         const std::string fault = faultOf(marker);
         if (fault.empty())
             result.push_back({marker.Get("time").GetNumberAsDouble() - begin, marker.Get("name").Get<std::string>()});

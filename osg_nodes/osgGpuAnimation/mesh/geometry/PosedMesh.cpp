@@ -30,7 +30,7 @@ osg::Vec3Array* toArray(const std::vector<glm::dvec3>& vectors)
     auto* array = new osg::Vec3Array;
     array->reserve(static_cast<unsigned int>(vectors.size()));
     for (const glm::dvec3& vector : vectors)
-        array->push_back(osg::Vec3(vector.x, vector.y, vector.z));
+        array->push_back(osg::Vec3(osg::Vec3d(vector.x, vector.y, vector.z)));
     return array;
 }
 

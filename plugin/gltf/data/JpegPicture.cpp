@@ -25,7 +25,8 @@ std::pair<int, int> sizeOf(const Turbo& turbo, const Bytes& bytes)
     // The result is ignored: it is an error for sampling factors without a name in libturbojpeg, which decodes them all
     // the same.
     int width = 0, height = 0, sampling = 0, space = 0;
-    if (turbo) tjDecompressHeader3(turbo.get(), bytes.data(), bytes.size(), &width, &height, &sampling, &space);
+    const auto size = static_cast<unsigned long>(bytes.size());
+    if (turbo) tjDecompressHeader3(turbo.get(), bytes.data(), size, &width, &height, &sampling, &space);
     return {std::max(width, 0), std::max(height, 0)};
 }
 
@@ -46,8 +47,8 @@ Result<osg::ref_ptr<osg::Image>> decodeJpeg(const Bytes& bytes)
     const osg::ref_ptr<osg::Image> image =
         newImage(static_cast<std::size_t>(width), static_cast<std::size_t>(height), GL_RGB, GL_UNSIGNED_BYTE);
     if (!image->data()) return damagedPicture();
-    const int result = tjDecompress2(turbo.get(), bytes.data(), bytes.size(), image->data(), width,
-                                     static_cast<int>(image->getRowSizeInBytes()), height, TJPF_RGB,
+    const int result = tjDecompress2(turbo.get(), bytes.data(), static_cast<unsigned long>(bytes.size()), image->data(),
+                                     width, static_cast<int>(image->getRowSizeInBytes()), height, TJPF_RGB,
                                      TJFLAG_BOTTOMUP | TJFLAG_LIMITSCANS);
     // A warning is a cut-off file: its pixels before the cut are decoded.
     if (result != 0 && tjGetErrorCode(turbo.get()) != TJERR_WARNING) return damagedPicture();

@@ -139,6 +139,24 @@ TEST(PoseBatchTest, sameBatchesAgreeInSetPosesPlacesAndTints)
     EXPECT_FALSE(batch.isSame(makeBatch(set, 0.5f, aside, PoseBatch::white)));
 }
 
+TEST(PoseBatchTest, plainPosesAreLikeInstructionsOfOneSample)
+{
+    const auto set = makeRandomSet({});
+    PoseBatch plain(set), general(set);
+    for (const float alpha : {0.0f, 0.25f, 1.0f})
+    {
+        PoseInstruction instruction;
+        instruction.sampleCount = 1;
+        instruction.samples[0] = {1, alpha, 1.0f, 0};
+        plain.addPlain(instruction.samples[0]);
+        general.add(instruction);
+    }
+    EXPECT_EQ(plain.size(), 3u);
+    EXPECT_TRUE(plain.isSame(general));
+    EXPECT_FALSE(plain.needs().mixing);
+    EXPECT_FALSE(general.needs().mixing);
+}
+
 /// One sample of full weight that shows this pose.
 PoseInstruction showing(const std::shared_ptr<const JointPose>& pose)
 {

@@ -109,7 +109,7 @@ TEST(SurfaceViewsTest, aCubeCoversSquaresAndRectangles)
         EXPECT_NEAR(glm::length(views.towards(view)), 1.0f, 1e-6f);
         const glm::vec3 along = glm::abs(views.towards(view));
         const bool isAlongAxis = std::max({along.x, along.y, along.z}) > 0.9f;
-        int count = 0;
+        std::size_t count = 0;
         for (const Seen& seen : views.seen(view, cube.surface()))
         {
             if (seen.triangle == Seen::none) continue;
@@ -118,7 +118,9 @@ TEST(SurfaceViewsTest, aCubeCoversSquaresAndRectangles)
             out[static_cast<int>(seen.triangle / 4)] = seen.triangle / 2 % 2 == 0 ? -1.0f : 1.0f;
             ASSERT_GT(glm::dot(out, views.towards(view)), 0.5f) << "view " << view << " of triangle " << seen.triangle;
         }
-        EXPECT_NEAR(count, isAlongAxis ? 6400.0 : ofRectangle, isAlongAxis ? 0.0 : 0.01 * ofRectangle) << view;
+        EXPECT_NEAR(static_cast<double>(count), isAlongAxis ? 6400.0 : ofRectangle,
+                    isAlongAxis ? 0.0 : 0.01 * ofRectangle)
+            << view;
         covered += count;
     }
     EXPECT_EQ(views.coveredCells(cube.surface()), covered);

@@ -22,7 +22,7 @@ folder=$root/build-osg-$variant
 source=$root/build-osg/sources/openscenegraph # of all variants
 osg=$folder/osg
 build=$folder/kit
-# Tests that compare with what this OSG lacks or does otherwise; for float matrices, none is known yet.
+# Tests that compare with what this OSG lacks or does otherwise; float matrices need none.
 without=(nothing)
 [ $variant != core ] || without=(
     # the fixed pipeline's look, a compatibility profile, drawables of a host without shaders
@@ -51,7 +51,7 @@ build_osg()
     local formats=(osg png jpeg rgb hdr bmp tga rot)
     local plugins=("${formats[@]/#/osgdb_}" osgdb_osgshadow osgdb_deprecated_osg{,animation}
         osgdb_serializers_osg{,animation,viewer,shadow,fx})
-    # A path that CMake writes into a library ends with an empty element, the current folder.
+    # No paths in OSG's libraries: CMake may end them with an empty element, for which the loader takes the current folder.
     local options=(-DBUILD_OSG_APPLICATIONS=OFF -DBUILD_OSG_PLUGINS_BY_DEFAULT=OFF -DBUILD_OSG_PLUGIN_SHADOW=ON
         -DCMAKE_SKIP_RPATH=ON -Wno-dev)
     case $variant in

@@ -6,6 +6,7 @@
 
 #include <osg/GL>
 
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -51,9 +52,12 @@ public:
     std::size_t add(const PoseInstruction& instruction, const AffineMatrix& rootMatrix);
     /// Does the same for a pose of one sample.
     std::size_t addSample(const BlendSample& sample, const AffineMatrix& rootMatrix);
-    /// Adds a pose of BlendCost::Plain, with an alpha in [0, 1], to a batch of such poses without root matrices.
+    /// Adds a pose of BlendCost::Plain, with an alpha in [0, 1], to a batch that has only such poses: no root matrices,
+    /// tints or targets.
     void addPlain(const BlendSample& sample)
     {
+        assert(_samples.size() == _size && !_needs.mixing && _rootMatrices.empty() && _tints.empty() &&
+               _targets.empty() && _posed.empty() && "the batch has only plain poses");
         _samples.push_back(sample);
         ++_size;
     }

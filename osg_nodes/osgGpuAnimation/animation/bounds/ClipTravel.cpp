@@ -183,8 +183,7 @@ BlendSample ClipTravel::sampleAt(float travel) const
         return {after->keyframe, after->alpha, 1.0f, _control};
     if (isJump) return {before.keyframe, before.alpha, 1.0f, _control};
     const float alphaAfter = after->keyframe == before.keyframe ? after->alpha : 1.0f;
-    const float covered = (travel - before.piece.travel) / (after->piece.travel - before.piece.travel);
-    const float share = std::min(1.0f, covered); // 1 for NaN, of travels that overflow
+    const float share = (travel - before.piece.travel) / (after->piece.travel - before.piece.travel);
     return {before.keyframe, before.alpha + share * (alphaAfter - before.alpha), 1.0f, _control};
 }
 

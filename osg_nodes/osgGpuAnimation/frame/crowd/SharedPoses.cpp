@@ -90,9 +90,9 @@ public:
             const BlendSample* poses = nullptr;
             for (std::uint64_t bits = shown.bits; bits != 0; bits &= bits - 1, ++number)
             {
-                const unsigned int step = countTrailingZeros(bits);
-                const std::size_t place = 64 * word + step;
-                shown.ranks[step] = static_cast<std::uint8_t>(number - shown.before);
+                const unsigned int bit = countTrailingZeros(bits);
+                const std::size_t place = 64 * word + bit;
+                shown.ranks[bit] = static_cast<std::uint8_t>(number - shown.before);
                 if (!poses) poses = _meshes.clips[_storage.clips[place / stepsOfClip]].poses.data();
                 if (number % maxPoses == 0) batches.push_back(function());
                 batches.back()->addPlain(poses[place % stepsOfClip]);
@@ -119,9 +119,8 @@ public:
             for (const PlacedInstances::Drawn& instance : shown)
             {
                 const ShownSteps& steps = _storage.shown[instance.pose / 64];
-                const std::uint32_t pose =
-                    steps.before + steps.ranks[instance.pose % 64] - static_cast<std::uint32_t>(firstPose);
-                *end = {pose, instance.instance};
+                const std::size_t pose = steps.before + steps.ranks[instance.pose % 64] - firstPose;
+                *end = {static_cast<std::uint32_t>(pose), instance.instance};
                 end += pose < poseCount;
             }
             out.resize(static_cast<std::size_t>(end - out.data()));
@@ -139,12 +138,12 @@ private:
         Shown* shown;  ///< null: the band is new
         float ofLevel; ///< the error of the level of detail
     };
-    /// The shown ones of 64 steps.
+    /// Which of 64 steps are shown, and the numbers of their poses.
     struct ShownSteps
     {
         std::uint64_t bits = 0;
         std::uint32_t before = 0;             ///< the number of poses before them
-        std::array<std::uint8_t, 64> ranks{}; ///< of the shown ones: 0, 1, 2 …
+        std::array<std::uint8_t, 64> ranks{}; ///< of each shown step among them
     };
     static constexpr std::ptrdiff_t blockSize = 128; ///< members
     /// A member that shares its pose.

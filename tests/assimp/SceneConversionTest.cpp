@@ -159,7 +159,7 @@ TEST_F(SceneConversionTest, clipsHaveSecondsAndTwentyFiveTicksASecondWithoutAWor
     for (std::size_t clip = 0; clip < 2; ++clip)
     {
         EXPECT_EQ(model.set->clips()[clip].name(), clip == 0 ? "Rise" : "Sink");
-        EXPECT_NEAR(model.set->clips()[clip].duration(), 2.0, 1e-6) << "floats of the file";
+        EXPECT_FLOAT_EQ(static_cast<float>(model.set->clips()[clip].duration()), 2.0f);
         const gltf::ModelVertices pose(model, static_cast<int>(clip), 1.0);
         EXPECT_NEAR(pose.positions(model.primitives[0])[0].y, expected[clip], 1e-5);
     }

@@ -65,7 +65,7 @@ endmacro()
 # assimp's own CMake package wants the libraries that libassimp is linked with, among them libdraco.
 macro(find_ASSIMP)
     find_package(ZLIB QUIET) # the arrays of binary FBX
-    if(ZLIB_FOUND AND UNIX) # POSIX starts and limits the helper program
+    if(ZLIB_FOUND AND CMAKE_SYSTEM_NAME STREQUAL "Linux") # prctl limits the helper program
         osggpuanimation_library(osgGpuAnimation_libassimp assimp/scene.h assimp)
     endif()
 endmacro()

@@ -174,13 +174,13 @@ std::string messageOf(const CLI::ParseError& fault, const CLI::App& app)
     return fault.what();
 }
 
-/// --clips FILE, which may come again, --clip-joints FILE and --clip-match HOW.
+/// --clips FILE, which may be repeated, --clip-joints FILE and --clip-match HOW.
 void addClips(CLI::App& command, ModelArguments& arguments)
 {
     command
         .add_option("--clips", arguments.clips,
                     "Add the clips of another file (.gltf, .glb and what Assimp reads), for joints of the same names; "
-                    "may come again")
+                    "may be repeated")
         ->option_text("FILE")
         ->allow_extra_args(false);
     command
@@ -295,7 +295,7 @@ void CommandLine::addPose()
     CLI::Option* clip = app.add_option("--clip", _pose.clip,
                                        "A clip's name, or an animation's number where none has that name; "
                                        "default: the first clip");
-    CLI::Option* time = app.add_option("--time", _pose.times, "Seconds on the clip's own time line; may come again")
+    CLI::Option* time = app.add_option("--time", _pose.times, "Seconds on the clip's own time line; may be repeated")
                             ->check(checkFinite)
                             ->allow_extra_args(false);
     CLI::Option* bind = app.add_flag("--bind", _pose.bind, "No clip: the nodes as the file has them, at time 0");

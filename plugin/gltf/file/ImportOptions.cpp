@@ -99,7 +99,7 @@ const std::vector<Option>& allOptions()
          "a name or a number", set<&ImportOptions::clip>},
         {"clips=FILE",
          "adds the clips of another file of any format with a reader, for the joints of the same names; "
-         "may come again",
+         "may be repeated",
          "the name of a file", set<&ImportOptions::clipsFiles>},
         {"clipJoints=FILE", "joints of the model and their counterparts in clips=FILE, as JSON: {\"Hips\": \"pelvis\"}",
          "the name of a file", set<&ImportOptions::clipJoints>},

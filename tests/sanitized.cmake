@@ -27,7 +27,5 @@ foreach(installed osggpuanim osgdb_assimp osgdb_gpuanim)
         add_dependencies(sanitized_tests ${installed})
     endif()
 endforeach()
-# A sanitizer makes the first frame slower than the next.
 gtest_discover_tests(sanitized_tests TEST_PREFIX sanitized. DISCOVERY_TIMEOUT 60
-                     TEST_FILTER -*theFirstFrameOfAThousandCopiesIsAsTheNext
                      PROPERTIES TIMEOUT ${test_timeout} ENVIRONMENT "${discovered_environment}")

@@ -125,6 +125,30 @@ TEST_F(FrameCallsGLTest, feedbackAndUploadsDoNotGrowWithTheCharacters)
     }
 }
 
+TEST_F(FrameCallsGLTest, theFirstFrameOfCopiesCallsNoMoreThanTheNextHoweverManyThereAre)
+{
+    const osg::ref_ptr<AnimatedCharacter> original = makeTestCharacter();
+    callsOfAFrame(original);
+    std::map<std::string, int> more[2]; // than in the second frame
+    for (const bool isMany : {false, true})
+    {
+        const osg::ref_ptr<osg::Group> copies = new osg::Group;
+        for (int i = 0; i < (isMany ? 1000 : 10); ++i)
+            copies->addChild(osg::clone(original.get(), osg::CopyOp::DEEP_COPY_NODES));
+        viewer().setSceneData(copies);
+        for (const int sign : {1, -1})
+        {
+            const GlCallTrace trace(state());
+            drawAt(sign > 0 ? 0.3 : 0.4);
+            for (const auto& [name, count] : trace.calls())
+                more[isMany][name] += sign * count;
+        }
+    }
+    for (const auto& [name, count] : more[1])
+        EXPECT_LE(count, more[0][name]) << name;
+    EXPECT_EQ(more[1]["glLinkProgram"], 0);
+}
+
 TEST_F(FrameCallsGLTest, levelsOfAPoseSetNoStateAnew)
 {
     const osg::ref_ptr<AnimatedCharacter> deep = deepCharacter();

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "plugin/SharedAssets.h"
 #include "serializers/StoredScene.h"
-#include "support/PeakMemory.h"
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
 #include <osg/NodeCallback>
-
-#include <cstdio>
-#include <ctime>
 
 // Copies and shared nodes, made as applications make them: each shows what its own controller says.
 
@@ -35,11 +31,6 @@ const CopyCase copies[] = {
 std::string wanderer()
 {
     return ownScene("Wanderer.glb");
-}
-
-double cpuMilliseconds()
-{
-    return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
 class CloningGLTest : public ViewerGLTest
@@ -182,32 +173,6 @@ TEST_F(CloningGLTest, theObjectCacheHandsOutCharactersOfTheirOwn)
     const osg::ref_ptr<osg::Node> crowd = osgDB::readRefNodeFile(wanderer() + ".2x2.crowd", options);
     EXPECT_NE(crowd, osgDB::readRefNodeFile(wanderer() + ".2x2.crowd", options));
     osgDB::Registry::instance()->clearObjectCache();
-}
-
-TEST_F(CloningGLTest, theFirstFrameOfAThousandCopiesIsAsTheNext)
-{
-    const osg::ref_ptr<osg::Node> scene = load();
-    osg::ref_ptr<osg::Group> few = new osg::Group;
-    for (int i = 0; i < 3; ++i)
-        few->addChild(osg::clone(scene.get(), osg::CopyOp::DEEP_COPY_NODES));
-    pictureOf(*few, 0.0); // programs, those of joined draws too, and buffers are there
-    osg::ref_ptr<osg::Group> all = new osg::Group;
-    const double start = cpuMilliseconds();
-    for (int i = 0; i < 1000; ++i)
-        all->addChild(osg::clone(scene.get(), osg::CopyOp::DEEP_COPY_NODES));
-    viewer().setSceneData(all);
-    viewer().advance(0.0);
-    viewer().updateTraversal();
-    all->getBound();
-    EXPECT_LE(cpuMilliseconds() - start, 100.0 * slowdown) << "for the copies and their first update";
-    double frames[4] = {};
-    for (int frame = 0; frame < 4; ++frame)
-    {
-        const double before = cpuMilliseconds();
-        drawAt(0.1 + 0.02 * frame);
-        frames[frame] = cpuMilliseconds() - before;
-    }
-    EXPECT_LE(frames[0], 1.5 * std::max({frames[1], frames[2], frames[3]}) + 50.0 * slowdown);
 }
 
 } // namespace osgGpuAnimation

@@ -59,7 +59,7 @@ public:
     /// uniforms, import_defines, and inputs or outputs: `viewPosition` and `viewNormal` of surfaceVertexShader(), or
     /// any that a hook of another place writes.
     void set(Place place, const std::string& text);
-    Place getPlace() const { return _place; } ///< see set()
+    Place getPlace() const { return _place; }            ///< see set()
     const std::string& getText() const { return _text; } ///< as given
     /// Null: no function.
     osg::Shader* getShader() const { return _shader.get(); }

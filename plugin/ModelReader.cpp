@@ -10,7 +10,6 @@
 #include <osgDB/FileUtils>
 
 #include <new>
-#include <utility>
 
 namespace osgGpuAnimation
 {

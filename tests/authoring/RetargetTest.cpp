@@ -396,6 +396,7 @@ TEST(RetargetTest, namesOfOtherCaseAreMatchedWhereNoneOfTheSameCaseIs)
               (std::vector<int>{0, 1, 3}));
     EXPECT_EQ(findCounterparts({"pelvis"}, {"Hips"}, {{"pelvis", "hips"}}), (std::vector<int>{0}));
     EXPECT_EQ(findCounterparts({"leg", "Leg"}, {"Leg"}, {}), (std::vector<int>{-1, 0}));
+    EXPECT_EQ(findCounterparts({"Arm_L"}, {"arm.r", "arm.l"}, {}), std::vector<int>{1}) << "exporters replace dots";
 }
 
 std::vector<int> byRole(const std::vector<std::string>& names, const std::vector<std::string>& others,
@@ -424,6 +425,8 @@ TEST(RetargetTest, jointsOfKnownRigsAreMatchedByTheirRoles)
          "J_Bip_L_LowerLeg"},
         {"DEF-spine", "DEF-spine.001", "DEF-spine.006", "DEF-shoulder.L", "DEF-upper_arm.R", "DEF-forearm.R",
          "DEF-thigh.L", "DEF-shin.R", "DEF-toe.L", "DEF-hand.L", "DEF-foot.R", "DEF-shoulder.R", "DEF-shin.L"},
+        {"Hips", "Spine", "Head", "Shoulder_L", "UpperArm.R", "LowerArm_R", "UpperLeg_L", "LowerLeg_R", "Toes_L",
+         "Hand_L", "Foot_R", "Shoulder_R", "LowerLeg_L"},
     };
     std::vector<int> all(rigs[0].size());
     std::iota(all.begin(), all.end(), 0);

@@ -548,6 +548,25 @@ TEST(ClipFilesTest, aFaultyFileCostsItsClipsAloneAndIsNamed)
     expectWarnings(imported(model, withClips({"good.gltf"})), {"clips \"good.gltf\""});
 }
 
+TEST(ClipFilesTest, clipsThatMoveNeitherASkinNorWhatIsAboveItAreRefused)
+{
+    const ScratchFolder folder;
+    ModelBuilder model, clips;
+    const int top = model.node("Armature"), hips = model.node("Hips", top), head = model.node("Head", hips);
+    model.at(model.node("Body", -1, model.skinnedTriangle())).skin = model.skin({hips, head});
+    const int pelvis = clips.node("pelvis", clips.node("Armature"));
+    clips.slidingClip("Run", pelvis);
+    const std::string path = folder.write("body.gltf", model.text());
+    folder.write("run.gltf", clips.text());
+    const ImportedModel without = loadModel(path, withClips({"run.gltf"}));
+    expectWarnings(without, {"no joint of a skin has a counterpart"});
+    clips.slide(0);
+    folder.write("run.gltf", clips.text());
+    const ImportedModel with = loadModel(path, withClips({"run.gltf"}));
+    expectWarnings(with, {"no counterpart for \"Hips\", \"Head\"", "no counterpart for \"pelvis\""});
+    EXPECT_EQ(clipNamesOf(with), std::vector<std::string>{"Run"});
+}
+
 TEST(ClipFilesTest, aFileNamesTheCounterpartsOfJoints)
 {
     const ScratchFolder folder;

@@ -11,7 +11,6 @@
 #include <osg/TexGen>
 #include <osg/Texture1D>
 #include <osg/TextureRectangle>
-#include <osg/Transform>
 
 #define EGL_NO_X11
 #include <EGL/egl.h>

@@ -33,37 +33,37 @@ private:
     std::unordered_map<std::string, std::vector<int>> _indices;
 };
 
-constexpr std::size_t rigCount = 6;
+constexpr std::size_t rigCount = 7;
 
 /// The sides that replace `?`, left and right.
-constexpr const char* sides[rigCount][2] = {{"left", "right"}, {"left", "right"}, {"l", "r"},
-                                            {"left", "right"}, {"l", "r"},        {"l", "r"}};
+constexpr const char* sides[rigCount][2] = {{"left", "right"}, {"left", "right"}, {"l", "r"}, {"left", "right"},
+                                            {"l", "r"},        {"l", "r"},        {"l", "r"}};
 
 /// The bones of a finger, which replace `*`; their numbers, from 1 on, replace `#`.
 constexpr const char* bones[] = {"proximal", "intermediate", "distal"};
 
 /// A role in each rig, as caselessJointName() has the names; empty: the rig has no such joint.
 constexpr const char* roles[][rigCount] = {
-    // Mixamo, CMU's BVH, Unreal, VRM, VRoid, Rigify
-    {"hips", "hips", "pelvis", "hips", "j_bip_c_hips", "def-spine"},
-    {"spine", "lowerback", "spine_01", "spine", "j_bip_c_spine", "def-spine.001"},
-    {"spine1", "spine", "spine_02", "chest", "j_bip_c_chest", "def-spine.002"},
-    {"spine2", "spine1", "spine_03", "upperchest", "j_bip_c_upperchest", "def-spine.003"},
-    {"neck", "neck", "neck_01", "neck", "j_bip_c_neck", "def-spine.004"},
-    {"head", "head", "head", "head", "j_bip_c_head", "def-spine.006"},
-    {"?shoulder", "?shoulder", "clavicle_?", "?shoulder", "j_bip_?_shoulder", "def-shoulder.?"},
-    {"?arm", "?arm", "upperarm_?", "?upperarm", "j_bip_?_upperarm", "def-upper_arm.?"},
-    {"?forearm", "?forearm", "lowerarm_?", "?lowerarm", "j_bip_?_lowerarm", "def-forearm.?"},
-    {"?hand", "?hand", "hand_?", "?hand", "j_bip_?_hand", "def-hand.?"},
-    {"?upleg", "?upleg", "thigh_?", "?upperleg", "j_bip_?_upperleg", "def-thigh.?"},
-    {"?leg", "?leg", "calf_?", "?lowerleg", "j_bip_?_lowerleg", "def-shin.?"},
-    {"?foot", "?foot", "foot_?", "?foot", "j_bip_?_foot", "def-foot.?"},
-    {"?toebase", "?toebase", "ball_?", "?toes", "j_bip_?_toebase", "def-toe.?"},
-    {"?handthumb#", "", "thumb_0#_?", "?thumb*", "j_bip_?_thumb#", "def-thumb.0#.?"},
-    {"?handindex#", "", "index_0#_?", "?index*", "j_bip_?_index#", "def-f_index.0#.?"},
-    {"?handmiddle#", "", "middle_0#_?", "?middle*", "j_bip_?_middle#", "def-f_middle.0#.?"},
-    {"?handring#", "", "ring_0#_?", "?ring*", "j_bip_?_ring#", "def-f_ring.0#.?"},
-    {"?handpinky#", "", "pinky_0#_?", "?little*", "j_bip_?_little#", "def-f_pinky.0#.?"},
+    // Mixamo, CMU's BVH, Unreal, VRM, VRoid, Rigify, and names like UpperArm_L
+    {"hips", "hips", "pelvis", "hips", "j_bip_c_hips", "def-spine", "hips"},
+    {"spine", "lowerback", "spine_01", "spine", "j_bip_c_spine", "def-spine_001", "spine"},
+    {"spine1", "spine", "spine_02", "chest", "j_bip_c_chest", "def-spine_002", ""},
+    {"spine2", "spine1", "spine_03", "upperchest", "j_bip_c_upperchest", "def-spine_003", "chest"},
+    {"neck", "neck", "neck_01", "neck", "j_bip_c_neck", "def-spine_004", "neck"},
+    {"head", "head", "head", "head", "j_bip_c_head", "def-spine_006", "head"},
+    {"?shoulder", "?shoulder", "clavicle_?", "?shoulder", "j_bip_?_shoulder", "def-shoulder_?", "shoulder_?"},
+    {"?arm", "?arm", "upperarm_?", "?upperarm", "j_bip_?_upperarm", "def-upper_arm_?", "upperarm_?"},
+    {"?forearm", "?forearm", "lowerarm_?", "?lowerarm", "j_bip_?_lowerarm", "def-forearm_?", "lowerarm_?"},
+    {"?hand", "?hand", "hand_?", "?hand", "j_bip_?_hand", "def-hand_?", "hand_?"},
+    {"?upleg", "?upleg", "thigh_?", "?upperleg", "j_bip_?_upperleg", "def-thigh_?", "upperleg_?"},
+    {"?leg", "?leg", "calf_?", "?lowerleg", "j_bip_?_lowerleg", "def-shin_?", "lowerleg_?"},
+    {"?foot", "?foot", "foot_?", "?foot", "j_bip_?_foot", "def-foot_?", "foot_?"},
+    {"?toebase", "?toebase", "ball_?", "?toes", "j_bip_?_toebase", "def-toe_?", "toes_?"},
+    {"?handthumb#", "", "thumb_0#_?", "?thumb*", "j_bip_?_thumb#", "def-thumb_0#_?", ""},
+    {"?handindex#", "", "index_0#_?", "?index*", "j_bip_?_index#", "def-f_index_0#_?", ""},
+    {"?handmiddle#", "", "middle_0#_?", "?middle*", "j_bip_?_middle#", "def-f_middle_0#_?", ""},
+    {"?handring#", "", "ring_0#_?", "?ring*", "j_bip_?_ring#", "def-f_ring_0#_?", ""},
+    {"?handpinky#", "", "pinky_0#_?", "?little*", "j_bip_?_little#", "def-f_pinky_0#_?", ""},
 };
 
 /// By name: a number of the row, the side and the bone. Names of one bone, or of no side, have those of the last.
@@ -141,7 +141,7 @@ std::string caselessJointName(const std::string& name)
 {
     std::string folded = bareJointName(name);
     std::transform(folded.begin(), folded.end(), folded.begin(),
-                   [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+                   [](unsigned char letter) { return letter == '.' ? '_' : static_cast<char>(std::tolower(letter)); });
     return folded;
 }
 

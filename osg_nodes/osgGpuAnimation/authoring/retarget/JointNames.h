@@ -15,7 +15,7 @@ namespace osgGpuAnimation
 /// "mixamorig:Hips", "mixamorig4_Hips", "mixamorigHips" and "Armature|hero:Hips".
 std::string bareJointName(const std::string& name);
 
-/// bareJointName() in small letters.
+/// bareJointName() in small letters, with `_` for dots, which exporters replace.
 std::string caselessJointName(const std::string& name);
 
 /// The names of joints, morphs and other elements that have one.

@@ -290,15 +290,11 @@ private:
     Storage& _storage;
 };
 
-SharedPoses::Shape::Shape(SkinnedGeometry& mesh) : mesh(&mesh), vertices(mesh.getVertexArray()) {}
-
 /// All meshes below the crowd, those of all levels of detail included.
 std::vector<SharedPoses::Shape> SharedPoses::shapesBelow(const osg::Group& crowd)
 {
     std::vector<Shape> shapes;
-    for (unsigned int child = 0; child < crowd.getNumChildren(); ++child)
-        forEachMeshBelow(*const_cast<osg::Node*>(crowd.getChild(child)),
-                         [&](SkinnedGeometry& mesh) { shapes.emplace_back(mesh); });
+    forEachMeshBelow(const_cast<osg::Group&>(crowd), [&](SkinnedGeometry& mesh) { shapes.emplace_back(mesh); });
     return shapes;
 }
 

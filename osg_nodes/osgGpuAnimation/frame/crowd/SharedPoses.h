@@ -55,7 +55,7 @@ private:
     /// A mesh and what its vertices are.
     struct Shape
     {
-        explicit Shape(SkinnedGeometry& mesh);
+        explicit Shape(SkinnedGeometry& mesh) : mesh(&mesh), vertices(mesh.getVertexArray()) {}
         bool operator==(const Shape& other) const { return mesh == other.mesh && vertices == other.vertices; }
 
         osg::ref_ptr<const SkinnedGeometry> mesh;

@@ -30,6 +30,7 @@ bool areAlike(const osg::StateSet& state, const osg::StateSet& other)
         osg::ref_ptr<osg::StateSet> copy = new osg::StateSet(of, osg::CopyOp::SHALLOW_COPY);
         for (const char* ofMesh : {"POSE_INFLUENCES", "POSE_NO_MORPHS"})
             copy->removeDefine(ofMesh);
+        copy->removeUniform("materialName");
         return copy;
     };
     const osg::ref_ptr<osg::StateSet> a = ofMaterial(state), b = ofMaterial(other);

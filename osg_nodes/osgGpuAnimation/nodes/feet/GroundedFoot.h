@@ -4,7 +4,6 @@
 #include <osgGpuAnimation/nodes/feet/GroundProbe.h>
 
 #include <osg/Matrixd>
-#include <osg/Quat>
 #include <osg/Vec3d>
 
 #include <optional>

@@ -3,7 +3,6 @@
 
 #include <osg/Drawable>
 #include <osg/UserDataContainer>
-#include <osg/ValueObject>
 
 #include <optional>
 #include <vector>

@@ -173,6 +173,7 @@ bool isDefined(osg::State& state, const std::string& name)
 bool keepFlattenedPlace(osg::Node& node, osg::NodeVisitor& visitor)
 {
     if (visitor.getVisitorType() != osg::NodeVisitor::NODE_VISITOR) return false;
+    if (dynamic_cast<const osgUtil::Optimizer::TextureAtlasVisitor*>(&visitor)) return true;
     const auto* flattening = dynamic_cast<const Flattening::Base*>(&visitor);
     osg::NodePath path = visitor.getNodePath();
     if (!flattening || Flattening::matrices(*flattening).empty() || path.size() < 2) return false;

@@ -11,8 +11,6 @@
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 
-#include <osg/MatrixTransform>
-
 #include <memory>
 #include <optional>
 #include <string>

@@ -157,6 +157,7 @@ ordered_json reportKeyframes(const gltf::ImportedModel& model)
 ordered_json reportMeshes(const gltf::ImportedModel& model)
 {
     std::set<int> meshes;
+    std::set<std::string> parts; // of the character
     std::size_t primitives = 0, vertices = 0, skinned = 0, rigid = 0, still = 0, targets = 0;
     for (const gltf::ImportedPrimitive& drawn : model.primitives)
     {
@@ -167,9 +168,10 @@ ordered_json reportMeshes(const gltf::ImportedModel& model)
         targets += count * drawn.targets;
         const bool isFromPalette = dynamic_cast<const SkinnedGeometry*>(drawn.geometry.get()) != nullptr;
         (drawn.skin >= 0 ? skinned : (isFromPalette ? rigid : still)) += count;
+        if (isFromPalette) parts.insert(drawn.geometry->getName());
     }
-    return {{"count", meshes.size()}, {"primitives", primitives}, {"vertices", vertices},   {"skinned", skinned},
-            {"rigid", rigid},         {"still", still},           {"morphTargets", targets}};
+    return {{"count", meshes.size()}, {"primitives", primitives}, {"vertices", vertices},    {"skinned", skinned},
+            {"rigid", rigid},         {"still", still},           {"morphTargets", targets}, {"parts", parts}};
 }
 
 ordered_json reportMaterials(const gltf::ImportedModel& model)
@@ -420,6 +422,7 @@ std::string reportText(const ordered_json& report)
                                meshes["skinned"].dump() + " skinned, " + meshes["rigid"].dump() + " rigid on joints, " +
                                meshes["still"].dump() + " still), " + meshes["vertices"].dump() + " vertices, " +
                                meshes["morphTargets"].dump() + " morph targets");
+    text += line("parts", listed(meshes["parts"]));
     text += line("materials", std::to_string(report["materials"].size())) + materialLines(report["materials"]);
     text += line("variants", listed(report["variants"]));
     text += line("lights", lightsText(report["lights"]));

@@ -169,8 +169,9 @@ std::string messageOf(const CLI::ParseError& fault, const CLI::App& app)
     const std::vector<std::string> unknown = app.remaining(true);
     const auto option = std::find_if(unknown.begin(), unknown.end(),
                                      [](const std::string& word) { return word.size() > 1 && word.front() == '-'; });
+    if (!unknown.empty() && unknown.front().rfind('-', 0) != 0 && app.get_subcommands().empty())
+        return "there is no command \"" + unknown.front() + "\"";
     if (option != unknown.end()) return "there is no option " + *option;
-    if (!unknown.empty() && app.get_subcommands().empty()) return "there is no command \"" + unknown.front() + "\"";
     return fault.what();
 }
 

@@ -55,6 +55,7 @@ struct Failure
 const Failure failures[] = {
     {"", "", "subcommand is required"},
     {"dance", "", "no command \"dance\""},
+    {"dance flag.gltf -o flag.png", "", "no command \"dance\""},
 
     {"inspect", "", "FILE is required"},
     {"inspect flag.gltf --yaml", "", "no option --yaml"},

@@ -97,6 +97,7 @@ TEST_F(ToolTest, inspectSaysWhatIsInTheFile)
     EXPECT_EQ(report["meshes"]["count"], 1);
     EXPECT_EQ(report["meshes"]["vertices"], 4);
     EXPECT_EQ(report["meshes"]["rigid"], 1);
+    EXPECT_EQ(report["meshes"]["parts"], json::array({"flag"}));
     EXPECT_EQ(report["materials"],
               json::parse(R"([{"name":"red","alphaMode":"OPAQUE","doubleSided":true,"unlit":false,"maps":[]}])"));
     for (const char* none : {"skins", "variants", "extensions", "warnings"})
@@ -109,7 +110,7 @@ TEST_F(ToolTest, inspectSaysWhatIsInTheFile)
     expectWords(outputOf({"inspect", "FLAG"}),
                 {"\n  hinge\n    flag\n", "bounds           (-1, 0, 0) to (1, 2, 0) in the rest pose",
                  "2 keyframes, bounds (-1, 0, 0) to (1, 3, 0)", "Swing", "2.000 s", "palette entries",
-                 "\n  red: opaque, double sided\n", "bytes on the GPU"});
+                 "\nparts            flag\n", "\n  red: opaque, double sided\n", "bytes on the GPU"});
 }
 
 TEST_F(ToolTest, inspectListsLightsAndCameras)

@@ -315,9 +315,8 @@ Result<std::shared_ptr<const AnimationSet>> withClipsOf(const std::shared_ptr<co
     const auto& all = result.value().set->clips();
     const std::vector<Clip> added(all.begin() + static_cast<std::ptrdiff_t>(clips.size()), all.end());
     const std::vector<bool> isMoved = movedJoints(set->skeleton(), added);
-    if (!set->skins().empty() && set->morphs().empty() &&
-        atRest.size() == namesInSkins(*set, namesIn(set->skeleton().joints())).size() &&
-        std::find(isMoved.begin(), isMoved.end(), true) == isMoved.end())
+    if (!set->skins().empty() && set->morphs().empty() && std::count(isMoved.begin(), isMoved.end(), true) == 0 &&
+        atRest.size() == namesInSkins(*set, namesIn(set->skeleton().joints())).size())
         return refuse("no joint of a skin has a counterpart; clipJoints=FILE (--clip-joints) names them");
     if (!atRest.empty())
         report.warn(file.name + ": they have no counterpart for " + namesText(atRest) + "; kept at rest");

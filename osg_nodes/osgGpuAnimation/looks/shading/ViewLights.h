@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osg/GLExtensions>
 #include <osg/Light>
 #include <osg/Matrix>
 #include <osg/StateAttribute>

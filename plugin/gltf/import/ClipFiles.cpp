@@ -313,19 +313,19 @@ Result<std::shared_ptr<const AnimationSet>> withClipsOf(const std::shared_ptr<co
     const std::vector<std::string>& leftOut = result.value().leftOut;
     std::vector<Clip> clips = set->clips();
     const auto& all = result.value().set->clips();
-    const std::vector<Clip> added(all.begin() + static_cast<std::ptrdiff_t>(clips.size()), all.end());
-    const std::vector<bool> isMoved = movedJoints(set->skeleton(), added);
-    if (!set->skins().empty() && set->morphs().empty() && std::count(isMoved.begin(), isMoved.end(), true) == 0 &&
-        atRest.size() == namesInSkins(*set, namesIn(set->skeleton().joints())).size())
+    const auto firstAdded = all.begin() + static_cast<std::ptrdiff_t>(clips.size());
+    if (!set->skins().empty() && set->morphs().empty() &&
+        atRest.size() == namesInSkins(*set, namesIn(set->skeleton().joints())).size() &&
+        movedJoints(set->skeleton(), {firstAdded, all.end()}) == std::vector<bool>(set->skeleton().jointCount()))
         return refuse("no joint of a skin has a counterpart; clipJoints=FILE (--clip-joints) names them");
     if (!atRest.empty())
         report.warn(file.name + ": they have no counterpart for " + namesText(atRest) + "; kept at rest");
     if (!leftOut.empty()) report.warn(file.name + ": the model has no counterpart for " + namesText(leftOut));
-    for (const Clip& made : added)
-        if (fits(set->skeleton(), made))
-            clips.push_back(made);
+    for (auto made = firstAdded; made != all.end(); ++made)
+        if (fits(set->skeleton(), *made))
+            clips.push_back(*made);
         else
-            report.warn(file.name + ": clip " + quoted(made.name()) + " takes joints or weights " + outOfRangeText() +
+            report.warn(file.name + ": clip " + quoted(made->name()) + " takes joints or weights " + outOfRangeText() +
                         "; clip skipped");
     if (clips.size() == all.size()) return result.value().set;
     if (clips.size() == set->clips().size()) return refuse("none of its clips can be played");

@@ -195,7 +195,8 @@ osg::ref_ptr<osg::StateSet> Materials::make(const MaterialUse& use)
     osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
     state->setName(material.name);
     // For osgUtil::Optimizer, which merges equal StateSets whatever their names: outfits know materials by name.
-    state->addUniform(new osg::Uniform("materialName", static_cast<int>(std::hash<std::string>()(material.name))));
+    if (!material.name.empty())
+        state->addUniform(new osg::Uniform("materialName", static_cast<int>(std::hash<std::string>()(material.name))));
     const bool lit = use.lit && material.extensions.count("KHR_materials_unlit") == 0;
     const bool usesArray = use.colored && !use.palette; // the fixed pipeline reads the vertex colours alone
     setAlpha(*state, material, use.palette); // before applyPbrMaterial(), whose transmission blends otherwise

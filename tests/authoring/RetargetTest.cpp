@@ -309,40 +309,48 @@ TEST(RetargetTest, theHipsFollowAMovingJointThatTheSetHasNot)
     EXPECT_LE(glm::distance(moved, glm::dvec3(2, 4.3, 6)), 1e-5);
 }
 
+/// hipsAtOrigin: the clips' skeleton rests as those of BVH files.
+void expectFeetOnTheGround(bool isSpline, bool hipsAtOrigin)
+{
+    // A squat: the hips go down as far as the bent leg asks for.
+    Channel hips{Channel::Path::Translation, Interpolation::Linear, 1, {}, {}};
+    Channel thigh{Channel::Path::Rotation, Interpolation::Linear, 2, {}, {}}, shank = thigh;
+    shank.target = 3;
+    for (int key = 0; key <= 8; ++key)
+    {
+        const double bend = 0.1 * key, ofThigh = 0.5 * bend, ofShank = 1.5 * bend; // from the vertical
+        for (Channel* channel : {&hips, &thigh, &shank})
+            channel->times.push_back(key);
+        const auto put = [](Channel& channel, std::initializer_list<double> v)
+        { channel.values.insert(channel.values.end(), v); };
+        if (isSpline) put(hips, {0, 0, 0});
+        put(hips, {0, 0.3 + std::cos(ofThigh) + std::cos(ofShank), 0});
+        if (isSpline) put(hips, {0, 0, 0});
+        const double ofKnee = ofThigh + ofShank;
+        put(thigh, {-std::sin(ofThigh / 2), 0, 0, std::cos(ofThigh / 2)});
+        put(shank, {std::sin(ofKnee / 2), 0, 0, std::cos(ofKnee / 2)});
+    }
+    if (isSpline) hips.interpolation = Interpolation::CubicSpline;
+    std::vector<Joint> joints = Leg().joints();
+    if (hipsAtOrigin) joints[1].rest.translation = glm::vec4(0.0f);
+    const SetPointer clips = makeSet(joints, {{hips, thigh, shank}});
+    const double ground = hipsAtOrigin ? 0.115 : 0.1; // in parts of the leg, or as high as at rest
+    const RetargetedSet result = retargeted(makeSet(Leg{1.0f, 0.7f, 1.6f}.joints(), {}), clips);
+    for (int key = 0; key <= 8; ++key)
+    {
+        EXPECT_NEAR(PosedJoints(clips, 0, key).origins.at("foot").y, 0.1, 1e-6);
+        EXPECT_NEAR(PosedJoints(result.set, 0, key).origins.at("foot").y, ground, 1e-6) << key;
+        // Between keyframes the hips go straight, and feet in arcs.
+        const double between = PosedJoints(clips, 0, key + 0.5).origins.at("foot").y - 0.1;
+        EXPECT_NEAR(PosedJoints(result.set, 0, key + 0.5).origins.at("foot").y, ground + 1.15 * between, 2e-3) << key;
+    }
+}
+
 TEST(RetargetTest, theLowestJointStaysOnTheGroundWhateverTheProportions)
 {
     for (const bool isSpline : {false, true})
-    {
-        // A squat: the hips go down as far as the bent leg asks for.
-        Channel hips{Channel::Path::Translation, Interpolation::Linear, 1, {}, {}};
-        Channel thigh{Channel::Path::Rotation, Interpolation::Linear, 2, {}, {}}, shank = thigh;
-        shank.target = 3;
-        for (int key = 0; key <= 8; ++key)
-        {
-            const double bend = 0.1 * key, ofThigh = 0.5 * bend, ofShank = 1.5 * bend; // from the vertical
-            for (Channel* channel : {&hips, &thigh, &shank})
-                channel->times.push_back(key);
-            const auto put = [](Channel& channel, std::initializer_list<double> v)
-            { channel.values.insert(channel.values.end(), v); };
-            if (isSpline) put(hips, {0, 0, 0});
-            put(hips, {0, 0.3 + std::cos(ofThigh) + std::cos(ofShank), 0});
-            if (isSpline) put(hips, {0, 0, 0});
-            const double ofKnee = ofThigh + ofShank;
-            put(thigh, {-std::sin(ofThigh / 2), 0, 0, std::cos(ofThigh / 2)});
-            put(shank, {std::sin(ofKnee / 2), 0, 0, std::cos(ofKnee / 2)});
-        }
-        if (isSpline) hips.interpolation = Interpolation::CubicSpline;
-        const SetPointer clips = makeSet(Leg().joints(), {{hips, thigh, shank}});
-        const RetargetedSet result = retargeted(makeSet(Leg{1.0f, 0.7f, 1.6f}.joints(), {}), clips);
-        for (int key = 0; key <= 8; ++key)
-        {
-            EXPECT_NEAR(PosedJoints(clips, 0, key).origins.at("foot").y, 0.1, 1e-6);
-            EXPECT_NEAR(PosedJoints(result.set, 0, key).origins.at("foot").y, 0.1, 1e-6) << key;
-            // Between keyframes the hips go straight, and feet in arcs.
-            const double between = PosedJoints(clips, 0, key + 0.5).origins.at("foot").y - 0.1;
-            EXPECT_NEAR(PosedJoints(result.set, 0, key + 0.5).origins.at("foot").y, 0.1 + 1.15 * between, 2e-3) << key;
-        }
-    }
+        for (const bool hipsAtOrigin : {false, true})
+            expectFeetOnTheGround(isSpline, hipsAtOrigin);
 }
 
 TEST(RetargetTest, otherTranslationsAreTheSetsAndFactorsOfTheScaleAreKept)
@@ -399,14 +407,6 @@ TEST(RetargetTest, namesOfOtherCaseAreMatchedWhereNoneOfTheSameCaseIs)
     EXPECT_EQ(findCounterparts({"Arm_L"}, {"arm.r", "arm.l"}, {}), std::vector<int>{1}) << "exporters replace dots";
 }
 
-std::vector<int> byRole(const std::vector<std::string>& names, const std::vector<std::string>& others,
-                        const std::map<std::string, std::string>& given)
-{
-    std::vector<int> found = findCounterparts(names, others, given);
-    RigNames::addCounterparts(names, others, given, found);
-    return found;
-}
-
 // One row a rig, one column a role.
 TEST(RetargetTest, jointsOfKnownRigsAreMatchedByTheirRoles)
 {
@@ -432,18 +432,18 @@ TEST(RetargetTest, jointsOfKnownRigsAreMatchedByTheirRoles)
     std::iota(all.begin(), all.end(), 0);
     for (std::size_t to = 0; to < rigs.size(); ++to)
         for (std::size_t from = 0; from < rigs.size(); ++from)
-            EXPECT_EQ(byRole(rigs[to], rigs[from], {}), all) << rigs[to][0] << " of " << rigs[from][0];
+            EXPECT_EQ(findCounterparts(rigs[to], rigs[from], {}), all) << rigs[to][0] << " of " << rigs[from][0];
     // A given counterpart counts, and a counterpart has one joint.
     std::vector<int> given = all;
     given[0] = -1;
-    EXPECT_EQ(byRole(rigs[2], rigs[5], {{"pelvis", ""}}), given);
+    EXPECT_EQ(findCounterparts(rigs[2], rigs[5], {{"pelvis", ""}}), given);
     std::vector<std::string> withRoot = rigs[2];
     withRoot.push_back("DEF-spine");
     std::vector<int> taken = given;
     taken.push_back(0);
-    EXPECT_EQ(byRole(withRoot, rigs[5], {}), taken);
+    EXPECT_EQ(findCounterparts(withRoot, rigs[5], {}), taken);
     const std::vector<std::string> few(rigs[2].begin(), rigs[2].begin() + 11);
-    EXPECT_EQ(byRole(few, rigs[5], {}), std::vector<int>(11, -1)) << "of no known rig";
+    EXPECT_EQ(findCounterparts(few, rigs[5], {}), std::vector<int>(11, -1)) << "of no known rig";
 }
 
 /// How a joint above another one moves, whose rest rotation the clips' file does not share.
@@ -501,6 +501,106 @@ TEST(RetargetTest, clipsWhoseRestPoseIsTheirFirstFrameAreTakenByName)
         EXPECT_EQ(clip.at(0, high)->translation.y, one.expectedLength);
         EXPECT_EQ(result.byName, one.isByName ? 2u : 0u);
         EXPECT_EQ(result.retargeted, one.isByName || one.restAngle == 0 ? 0u : 2u);
+    }
+}
+
+/// A body with Mixamo's names at rest, its joints at random angles. Angles in radians: by how much the arms hang below
+/// the horizontal, and how far the legs are spread.
+std::vector<Joint> bodyAtRest(double arms, double legs, unsigned int seed, bool hasExtra)
+{
+    std::mt19937 random(seed);
+    std::vector<Joint> joints;
+    std::vector<glm::dquat> rotations;
+    std::vector<glm::dvec3> places;
+    const auto add = [&](const std::string& name, int parent, const glm::dvec3& place)
+    {
+        const glm::vec4 q = randomRotation(random);
+        const glm::dquat rotation(q.w, q.x, q.y, q.z);
+        const auto up = static_cast<std::size_t>(std::max(parent, 0));
+        const glm::dquat back = parent < 0 ? glm::dquat(1, 0, 0, 0) : glm::conjugate(rotations[up]);
+        const glm::dvec3 offset = back * (parent < 0 ? place : place - places[up]);
+        const glm::dquat local = back * rotation;
+        Joint joint{name, parent, {}, -1};
+        joint.rest.rotation = glm::vec4(local.x, local.y, local.z, local.w);
+        joint.rest.translation = glm::vec4(glm::vec3(offset), 0.0f);
+        joints.push_back(joint);
+        rotations.push_back(rotation);
+        places.push_back(place);
+        return static_cast<int>(joints.size()) - 1;
+    };
+    const int hips = add("Hips", -1, {0, 1, 0}), spine = add("Spine", hips, {0, 1.2, 0});
+    add("Head", spine, {0, 1.6, 0});
+    for (const auto& [name, side] :
+         {std::pair<std::string, double>("Left", 1), std::pair<std::string, double>("Right", -1)})
+    {
+        const glm::dvec3 along(side * std::cos(arms), -std::sin(arms), 0), shoulder(side * 0.2, 1.5, 0);
+        const int arm = add(name + "Arm", spine, shoulder);
+        const int elbow = hasExtra ? add(name + "Helper", arm, shoulder + 0.3 * along) : arm;
+        add(name + "Hand", add(name + "ForeArm", elbow, shoulder + 0.3 * along), shoulder + 0.6 * along);
+        const glm::dvec3 down(side * std::sin(legs), -std::cos(legs), 0), hip(side * 0.1, 0.95, 0);
+        const int shank = add(name + "Leg", add(name + "UpLeg", hips, hip), hip + 0.45 * down);
+        add(name + "Foot", shank, hip + 0.9 * down);
+    }
+    return joints;
+}
+
+/// One row a rest pose of the clips and one of the set; see bodyAtRest().
+struct LimbCase
+{
+    const char* name;
+    double clipsArms, clipsLegs, arms, legs;
+    bool hasExtra; ///< of the clips: a joint at each elbow, which moves
+    const char* unmoved;
+};
+
+const LimbCase limbCases[] = {{"from a T to an A", 0, 0, 0.8, 0, false, ""},
+                              {"from an A to a T, with spread legs", 0.9, 0.3, 0, 0.05, false, ""},
+                              {"from spread legs to straight ones", 0, 0.35, 0, 0, false, ""},
+                              {"a joint without a counterpart moves", 0.1, 0, 0.8, 0.2, true, ""},
+                              {"arms that the clip does not move", 0, 0, 0.8, 0, false, "Arm"},
+                              {"legs that the clip does not move", 0, 0.35, 0, 0, false, "Leg"}};
+
+TEST(RetargetTest, limbsOfKnownRigsPointAsInTheClipWhateverTheRestPose)
+{
+    for (const LimbCase& one : limbCases)
+    {
+        SCOPED_TRACE(one.name);
+        std::mt19937 random(7);
+        const std::vector<Joint> joints = bodyAtRest(one.clipsArms, one.clipsLegs, 1, one.hasExtra);
+        std::vector<Channel> channels;
+        for (std::size_t joint = 0; joint < joints.size(); ++joint)
+        {
+            const std::string& name = joints[joint].name;
+            const bool isStill = *one.unmoved != '\0' && name.find(one.unmoved) != std::string::npos;
+            if (!isStill && name.find("Hand") == std::string::npos)
+                channels.push_back(randomTurns(static_cast<int>(joint), Interpolation::Linear, random));
+        }
+        const SetPointer clips = makeSet(joints, {channels});
+        const SetPointer set = makeSet(bodyAtRest(one.arms, one.legs, 2, false), {});
+        const SetPointer made = retargeted(set, clips).set;
+        for (const double time : keyTimes)
+        {
+            const PosedJoints wanted(clips, 0, time), shown(made, 0, time);
+            const auto boneOf = [](const PosedJoints& pose, const std::string& joint, const std::string& end)
+            { return glm::normalize(pose.origins.at(end) - pose.origins.at(joint)); };
+            for (const std::string side : {"Left", "Right"})
+            {
+                for (const auto& [joint, end] : {std::pair("Arm", "ForeArm"), std::pair("ForeArm", "Hand"),
+                                                 std::pair("UpLeg", "Leg"), std::pair("Leg", "Foot")})
+                    EXPECT_LE(glm::distance(boneOf(wanted, side + joint, side + end),
+                                            boneOf(shown, side + joint, side + end)),
+                              2e-5)
+                        << side << joint << " at " << time;
+                EXPECT_LE(angleBetween(wanted.turns.at(side + "Foot"), shown.turns.at(side + "Foot")), 2e-5);
+                EXPECT_LE(angleBetween(wanted.turns.at("Head"), shown.turns.at("Head")), 2e-5);
+            }
+        }
+        for (const std::string hand : {"LeftHand", "RightHand"})
+        {
+            const auto joint = static_cast<std::size_t>(made->skeleton().findJoint(hand));
+            const glm::vec4 apart = made->clips()[0].at(1, joint)->rotation - set->restPose()[joint].rotation;
+            EXPECT_LE(glm::length(apart), 1e-6f) << "hands stay in line with forearms";
+        }
     }
 }
 

@@ -125,7 +125,7 @@ TEST_F(FrameCallsGLTest, feedbackAndUploadsDoNotGrowWithTheCharacters)
     }
 }
 
-TEST_F(FrameCallsGLTest, theFirstFrameOfCopiesCallsNoMoreThanTheNextHoweverManyThereAre)
+TEST_F(FrameCallsGLTest, theFirstFrameOfManyCopiesHasNoMoreCallsOfItsOwnThanThatOfFew)
 {
     const osg::ref_ptr<AnimatedCharacter> original = makeTestCharacter();
     callsOfAFrame(original);

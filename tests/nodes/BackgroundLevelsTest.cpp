@@ -33,10 +33,10 @@ struct TubeCrowd
 
     SkinnedGeometry& part() { return *parts.front(); }
     bool hasLevels() const { return CrowdDetail::levels(*crowd) && MeshDetail::findLevels(*parts.front()); }
-    /// Updates until the levels are there, for a minute at most in a Release build.
+    /// Updates until the levels are there, for half a minute at most in a Release build.
     bool getsLevels()
     {
-        const auto end = Clock::now() + slowdown * std::chrono::minutes(1);
+        const auto end = Clock::now() + slowdown * std::chrono::seconds(30);
         for (double time = 0.0; !hasLevels() && Clock::now() < end; time += 0.01)
         {
             crowd->update(time);

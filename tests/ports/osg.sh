@@ -38,8 +38,6 @@ without=(nothing)
     BindingsGLTest JoiningModelsGLTest ViewersGLTest.contextsThatShare 'TwoContextsGLTest.*Shared' SerializersGLTest
     # drawings of osgAnimation, plugins that are not built here
     ConvertedScenesGLTest CommandFailuresGLTest PlantedPluginsGLTest
-    # time, which the warnings of this OSG take
-    CloningGLTest.theFirstFrame
     # a program that prepareFirstDraw() does not foresee in a core profile
     FirstDrawGLTest.theFirstFrame ReadmeStartGLTest.aSceneIsCompiled
 )

@@ -22,7 +22,7 @@ struct RetargetOptions
 {
     /// From joints of the set to their counterparts in the set of the clips, where their names differ; to an empty
     /// name: the joint has none. All others are matched by name, without namespaces and the prefix `mixamorig`, then
-    /// without regard to case, then by the names of known rigs, see RigNames.
+    /// without regard to case and with `_` for dots, then by the names of known rigs, see findCounterparts().
     std::map<std::string, std::string> counterparts{};
     /// The joint of the set that carries the body. Empty: a joint called hips or pelvis, else the first joint below
     /// which the skeleton branches.

@@ -125,7 +125,8 @@ void write(const glm::dvec3& value, glm::vec4& place)
 /// Legs of other proportions would take the feet off the ground. Where a body is not copied, its hips are therefore
 /// shifted along +Y at each keyframe, so that the body is as high above the ground as in the clip, times the ratio of
 /// the hip heights. A body touches the ground with a joint that is as low as the lowest one at rest; or, with ankles,
-/// toes and paws, as low as that joint itself at rest.
+/// toes and paws, as low as that joint itself at rest. Where `from` rests below the ground of its clip, the ground of
+/// the clip is the plane y = 0, and both bodies touch it alike.
 class ClipRetargeter
 {
 public:
@@ -180,6 +181,7 @@ private:
     {
         bool copiesRotation = false, copiesTranslation = false, copiesScale = false;
         bool movesBody = false;                           ///< follows the translation without copying it
+        bool isTurned = false;                            ///< at rest, see RigMatch::toRest()
         glm::dquat before{1, 0, 0, 0}, after{1, 0, 0, 0}; ///< of the rotation
         glm::dmat3 translation{1.0}; ///< from the space of the source's parent to that of the joint's parent
         glm::dmat3 scale{1.0};
@@ -198,7 +200,7 @@ private:
         {
             const glm::dvec3 ownRest(_retargeter._to.skeleton.joint(match.joint).rest.translation);
             const glm::dvec3 otherRest(_retargeter._from.skeleton.joint(match.source).rest.translation);
-            const bool turns = isMoved && !factors.copiesRotation;
+            const bool turns = (isMoved || factors.isTurned) && !factors.copiesRotation;
             const bool shifts = isMoved && factors.movesBody && !factors.copiesTranslation;
             const bool grows = isMoved && !factors.copiesScale && isFinite(factors.scale);
             for (std::size_t k = 0; k < _clip.keyframeCount(); ++k)
@@ -232,8 +234,7 @@ private:
             const glm::dquat back = glm::conjugate(pose.turnOf(match.above, fromRest));
             const glm::dquat turn = back * pose.turnOf(static_cast<int>(match.source), fromRest);
             JointTransform& out = at(keyframe, match.joint, 0);
-            out.rotation = Rotation::toFloats(glm::conjugate(parent) * turn * parent *
-                                              Rotation::unitQuaternion(own.rest.rotation));
+            out.rotation = Rotation::toFloats(glm::conjugate(parent) * turn * toRest.rotations[match.joint]);
             out.translation = glm::vec4(glm::vec3(own.rest.translation), _perTrack == 3 ? 1.0f : 0.0f);
             if (!factors.movesBody && !match.isSameRig) return;
             const glm::dvec3 way =
@@ -283,7 +284,8 @@ private:
 
         /// A joint that is low at rest stands: it touches the ground at that height. Others touch it at the height of
         /// the lowest joint.
-        Soles(const RigMatch& match, const BodyMatch& body) : hips(match.joints()[body.hips].joint), ratio(body.ratio)
+        Soles(const RigMatch& match, const BodyMatch& body, const Skeleton& from, const Clip& clip)
+            : hips(match.joints()[body.hips].joint), ratio(body.ratio)
         {
             constexpr double max = std::numeric_limits<double>::max();
             double ownMin = max, ownMax = -max, otherMin = max, otherMax = -max;
@@ -305,6 +307,17 @@ private:
                                     part.other - otherMin <= low * (otherMax - otherMin);
                 if (!stands) part.own = ownMin, part.other = otherMin;
             }
+            if (otherMin >= low * (otherMin - otherMax)) return;
+            // A BVH file rests with its hips at the origin, and moves above the plane y = 0.
+            double lowest = max;
+            for (std::size_t k = 0; k < clip.keyframeCount(); ++k)
+            {
+                const JointPlaces pose(from, clip.at(k, 0), clip.transformsPerTrack());
+                for (const Part& part : parts)
+                    lowest = std::min(lowest, pose.originOf(part.match->source).y);
+            }
+            for (Part& part : parts)
+                if (lowest > 0.5 * otherMin) part.other += ownMin / ratio - otherMin;
         }
 
         /// By how much the body of `to` is too low.
@@ -332,12 +345,13 @@ private:
         const Joint& own = _to.skeleton.joint(match.joint);
         const Joint& other = _from.skeleton.joint(match.source);
         const glm::dquat ownParent = toRest.rotationOf(own.parent), otherParent = fromRest.rotationOf(other.parent);
-        const glm::dquat ownRest = Rotation::unitQuaternion(own.rest.rotation),
+        const glm::dquat ownRest = glm::conjugate(ownParent) * toRest.rotations[match.joint],
                          otherRest = Rotation::unitQuaternion(other.rest.rotation);
         factors.before = glm::conjugate(ownParent) * otherParent;
         factors.after = glm::conjugate(otherRest) * glm::conjugate(otherParent) * ownParent * ownRest;
         factors.translation = match.ratio * glm::inverse(toRest.linearOf(own.parent)) * fromRest.linearOf(other.parent);
         factors.movesBody = match.movesBody && isFinite(factors.translation);
+        factors.isTurned = !RestPose::areAlike(ownRest, Rotation::unitQuaternion(own.rest.rotation));
 
         // Squares of the cosines between the joints' axes: exact for axes in another order and for equal factors.
         const glm::dmat3 axes = glm::mat3_cast(glm::conjugate(ownParent * ownRest) * (otherParent * otherRest));
@@ -366,7 +380,7 @@ private:
         for (const BodyMatch& body : _match.bodies())
         {
             const JointMatch& hips = _match.joints()[body.hips];
-            if (!hips.isSameRig && !hips.isByName) bodies.emplace_back(_match, body);
+            if (!hips.isSameRig && !hips.isByName) bodies.emplace_back(_match, body, _from.skeleton, clip);
         }
         if (bodies.empty()) return;
         const std::size_t perTrack = clip.transformsPerTrack(), stride = _trackCount * perTrack;

@@ -33,12 +33,13 @@ struct RetargetedSet
 ///
 /// Joints and morphs are matched by name, see RetargetOptions. Where their rest poses agree, the clips are copied
 /// bit by bit; RetargetOptions::match may want this elsewhere, too. Else rotations keep their difference from the rest
-/// pose in model space (derived in WithClipsOf.cpp), so both characters must face the same way at rest. The hips and
-/// the joints above them move by the ratio of the hip heights, which is that of the legs; at each keyframe the hips are
-/// shifted along +Y, so that the body's height above the ground is that of the clip times the ratio. Other translations
-/// are those of the set's rest pose; factors of the rest scale are kept. What has no counterpart keeps its rest pose.
-/// Times, markers and morph weights are copied. A name that the set's clips have gets a number: `Idle 2`. The new clips
-/// are exact: compact ones may be compacted again (see compactClips()).
+/// pose in model space (derived in WithClipsOf.cpp), so both characters must face the same way at rest; arms and legs
+/// of known rigs (see findCounterparts()) point as in the clip, however they rest. The hips and the joints above them
+/// move by the ratio of the hip heights, which is that of the legs; at each keyframe the hips are shifted along +Y, so
+/// that the body's height above the ground is that of the clip times the ratio. Other translations are those of the
+/// set's rest pose; factors of the rest scale are kept. What has no counterpart keeps its rest pose. Times, markers and
+/// morph weights are copied. A name that the set's clips have gets a number: `Idle 2`. The new clips are exact: compact
+/// ones may be compacted again (see compactClips()).
 ///
 /// Errors: the other set has no clips; neither a joint nor a morph has a counterpart; a name in the options does
 /// not exist; root motion was removed from a clip (see withRootMotion()) whose joint has another rest pose; errors

@@ -22,8 +22,8 @@
 #include <iterator>
 #include <optional>
 #include <string_view>
-#include <unordered_map>
 #include <unordered_set>
+#include <utility>
 
 namespace osgGpuAnimation::gltf
 {
@@ -132,45 +132,33 @@ std::vector<std::string> namesInSkins(const AnimationSet& set, const std::vector
     return chosen;
 }
 
-/// The joints of a skeleton by name, without namespaces.
-class JointsByName
+/// The joints of the clips that are given for joints of the model.
+std::map<std::string, std::string> givenFor(const std::vector<std::string>& names, const Skeleton& clips,
+                                            const ClipJoints& joints)
 {
-public:
-    explicit JointsByName(const Skeleton& skeleton)
+    std::vector<std::string> own, wanted;
+    for (const std::string& name : names)
     {
-        for (const Joint& joint : skeleton.joints())
-        {
-            _exact.emplace(joint.name, &joint.name);
-            _names.emplace(bareJointName(joint.name), &joint.name);
-        }
+        const auto given = joints.counterparts.find(bareJointName(name));
+        if (given == joints.counterparts.end() || name.empty()) continue;
+        own.push_back(name);
+        wanted.push_back(given->second);
     }
+    const std::vector<int> found = findCounterparts(wanted, namesIn(clips.joints()), {});
+    std::map<std::string, std::string> counterparts;
+    for (std::size_t i = 0; i < own.size(); ++i)
+        if (found[i] >= 0 || wanted[i].empty())
+            counterparts[own[i]] = found[i] < 0 ? "" : clips.joint(static_cast<std::size_t>(found[i])).name;
+    return counterparts;
+}
 
-    /// The joint's own name, of the first joint if there are several; null: there is none.
-    const std::string* find(const std::string& name) const
-    {
-        if (const auto exact = _exact.find(name); exact != _exact.end()) return exact->second;
-        const auto found = _names.find(bareJointName(name));
-        return found == _names.end() ? nullptr : found->second;
-    }
-
-private:
-    std::unordered_map<std::string, const std::string*> _exact;
-    std::unordered_map<std::string, const std::string*> _names; ///< by bare name
-};
-
-RetargetOptions retargetOptions(const ClipJoints& joints, const Skeleton& model, const Skeleton& clips)
+void removeKnown(std::vector<std::string>& names, const Skeleton& skeleton)
 {
-    RetargetOptions options;
-    if (joints.counterparts.empty()) return options;
-    const JointsByName others(clips);
-    for (const Joint& joint : model.joints())
-    {
-        const auto given = joints.counterparts.find(bareJointName(joint.name));
-        if (given == joints.counterparts.end() || joint.name.empty()) continue;
-        const std::string* const other = others.find(given->second);
-        if (other || given->second.empty()) options.counterparts[joint.name] = other ? *other : "";
-    }
-    return options;
+    const std::vector<int> found = findCounterparts(names, namesIn(skeleton.joints()), {});
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        if (found[i] < 0) std::swap(names[kept++], names[i]);
+    names.resize(kept);
 }
 
 void noteMatch(const std::string& name, const RetargetedSet& result, Report& report)
@@ -227,20 +215,15 @@ ClipJoints readClipJoints(const std::string& modelFile, const ImportOptions& opt
 void warnOfUnknownJoints(const ClipJoints& joints, const Skeleton& model, const std::vector<ClipFile>& files,
                          Report& report)
 {
-    if (joints.counterparts.empty()) return;
-    const JointsByName own(model);
-    std::vector<JointsByName> others;
-    for (const ClipFile& file : files)
-        others.emplace_back(file.set->skeleton());
     std::vector<std::string> notOwn, notOthers;
     for (const auto& [name, counterpart] : joints.counterparts)
     {
-        if (!own.find(name)) notOwn.push_back(name);
-        const bool isKnown =
-            std::any_of(others.begin(), others.end(),
-                        [&wanted = counterpart](const JointsByName& file) { return file.find(wanted); });
-        if (!counterpart.empty() && !isKnown) notOthers.push_back(counterpart);
+        notOwn.push_back(name);
+        if (!counterpart.empty()) notOthers.push_back(counterpart);
     }
+    removeKnown(notOwn, model);
+    for (const ClipFile& file : files)
+        removeKnown(notOthers, file.set->skeleton());
     if (!notOwn.empty()) report.warn(joints.name + ": the model has no joint " + namesText(notOwn));
     if (!notOthers.empty()) report.warn(joints.name + ": no file of clips has a joint " + namesText(notOthers));
 }
@@ -272,23 +255,15 @@ std::vector<bool> nodesMovedBy(const std::vector<ClipFile>& files, const ClipJoi
                                const tinygltf::Model& model)
 {
     std::vector<bool> nodes(model.nodes.size(), false);
-    std::unordered_set<std::string> moved; // by caselessJointName()
+    const std::vector<std::string> names = namesIn(model.nodes);
     for (const ClipFile& file : files)
     {
         const Skeleton& skeleton = file.set->skeleton();
         const std::vector<bool> isMoved = movedJoints(skeleton, file.set->clips());
-        for (std::size_t joint = 0; joint < isMoved.size(); ++joint)
-            if (isMoved[joint]) moved.insert(caselessJointName(skeleton.joint(joint).name));
-        const std::vector<int> ofRole = RigNames::counterparts(namesIn(model.nodes), namesIn(skeleton.joints()));
+        const std::vector<int> counterparts =
+            findCounterparts(names, namesIn(skeleton.joints()), givenFor(names, skeleton, joints));
         for (std::size_t node = 0; node < nodes.size(); ++node)
-            if (ofRole[node] >= 0 && isMoved[static_cast<std::size_t>(ofRole[node])]) nodes[node] = true;
-    }
-    for (std::size_t node = 0; node < nodes.size(); ++node)
-    {
-        const std::string name = bareJointName(model.nodes[node].name);
-        const auto given = joints.counterparts.find(name);
-        const bool isGiven = given != joints.counterparts.end() && moved.count(caselessJointName(given->second)) > 0;
-        if (!name.empty() && (isGiven || moved.count(caselessJointName(name)) > 0)) nodes[node] = true;
+            if (counterparts[node] >= 0 && isMoved[static_cast<std::size_t>(counterparts[node])]) nodes[node] = true;
     }
     return nodes;
 }
@@ -303,7 +278,8 @@ Result<std::shared_ptr<const AnimationSet>> withClipsOf(const std::shared_ptr<co
         bytes += clip.keyframeCount() * clip.transformsPerTrack() * set->trackCount() * sizeof(JointTransform);
     if (!budget.take(bytes))
         return refuse("its clips would take " + std::to_string(bytes) + " bytes, " + budget.limitText());
-    RetargetOptions options = retargetOptions(joints, set->skeleton(), file.set->skeleton());
+    RetargetOptions options;
+    options.counterparts = givenFor(namesIn(set->skeleton().joints()), file.set->skeleton(), joints);
     options.match = match;
     const Result<RetargetedSet> result = osgGpuAnimation::withClipsOf(*set, *file.set, options);
     if (!result) return refuse(result.error().message);
@@ -314,10 +290,12 @@ Result<std::shared_ptr<const AnimationSet>> withClipsOf(const std::shared_ptr<co
     std::vector<Clip> clips = set->clips();
     const auto& all = result.value().set->clips();
     const auto firstAdded = all.begin() + static_cast<std::ptrdiff_t>(clips.size());
-    if (!set->skins().empty() && set->morphs().empty() &&
+    if (!set->skins().empty() && (set->morphs().empty() || file.set->morphs().empty()) &&
         atRest.size() == namesInSkins(*set, namesIn(set->skeleton().joints())).size() &&
         movedJoints(set->skeleton(), {firstAdded, all.end()}) == std::vector<bool>(set->skeleton().jointCount()))
-        return refuse("no joint of a skin has a counterpart; clipJoints=FILE (--clip-joints) names them");
+        return refuse("no joint of a skin has a counterpart: they are " + namesText(atRest) +
+                      "; those of the clips are " + namesText(leftOut) +
+                      "; clipJoints=FILE (--clip-joints) names counterparts");
     if (!atRest.empty())
         report.warn(file.name + ": they have no counterpart for " + namesText(atRest) + "; kept at rest");
     if (!leftOut.empty()) report.warn(file.name + ": the model has no counterpart for " + namesText(leftOut));

@@ -12,27 +12,6 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// Indices by name.
-class NameIndex
-{
-public:
-    void add(const std::string& name, int index)
-    {
-        if (!name.empty()) _indices[name].push_back(index);
-    }
-
-    /// The n-th of that name, the first one where there are fewer; -1: none.
-    int find(const std::string& name, std::size_t n) const
-    {
-        const auto found = _indices.find(name);
-        if (found == _indices.end()) return -1;
-        return found->second[n < found->second.size() ? n : 0];
-    }
-
-private:
-    std::unordered_map<std::string, std::vector<int>> _indices;
-};
-
 constexpr std::size_t rigCount = 7;
 
 /// The sides that replace `?`, left and right.
@@ -44,7 +23,13 @@ constexpr const char* bones[] = {"proximal", "intermediate", "distal"};
 
 /// A role in each rig, as caselessJointName() has the names; empty: the rig has no such joint.
 constexpr const char* roles[][rigCount] = {
-    // Mixamo, CMU's BVH, Unreal, VRM, VRoid, Rigify, and names like UpperArm_L
+    // Mixamo, CMU's BVH, Unreal, VRM, VRoid, Rigify, and names like UpperArm_L; bones of limbs first, see limbBones()
+    {"?arm", "?arm", "upperarm_?", "?upperarm", "j_bip_?_upperarm", "def-upper_arm_?", "upperarm_?"},
+    {"?forearm", "?forearm", "lowerarm_?", "?lowerarm", "j_bip_?_lowerarm", "def-forearm_?", "lowerarm_?"},
+    {"?hand", "?hand", "hand_?", "?hand", "j_bip_?_hand", "def-hand_?", "hand_?"},
+    {"?upleg", "?upleg", "thigh_?", "?upperleg", "j_bip_?_upperleg", "def-thigh_?", "upperleg_?"},
+    {"?leg", "?leg", "calf_?", "?lowerleg", "j_bip_?_lowerleg", "def-shin_?", "lowerleg_?"},
+    {"?foot", "?foot", "foot_?", "?foot", "j_bip_?_foot", "def-foot_?", "foot_?"},
     {"hips", "hips", "pelvis", "hips", "j_bip_c_hips", "def-spine", "hips"},
     {"spine", "lowerback", "spine_01", "spine", "j_bip_c_spine", "def-spine_001", "spine"},
     {"spine1", "spine", "spine_02", "chest", "j_bip_c_chest", "def-spine_002", ""},
@@ -52,12 +37,6 @@ constexpr const char* roles[][rigCount] = {
     {"neck", "neck", "neck_01", "neck", "j_bip_c_neck", "def-spine_004", "neck"},
     {"head", "head", "head", "head", "j_bip_c_head", "def-spine_006", "head"},
     {"?shoulder", "?shoulder", "clavicle_?", "?shoulder", "j_bip_?_shoulder", "def-shoulder_?", "shoulder_?"},
-    {"?arm", "?arm", "upperarm_?", "?upperarm", "j_bip_?_upperarm", "def-upper_arm_?", "upperarm_?"},
-    {"?forearm", "?forearm", "lowerarm_?", "?lowerarm", "j_bip_?_lowerarm", "def-forearm_?", "lowerarm_?"},
-    {"?hand", "?hand", "hand_?", "?hand", "j_bip_?_hand", "def-hand_?", "hand_?"},
-    {"?upleg", "?upleg", "thigh_?", "?upperleg", "j_bip_?_upperleg", "def-thigh_?", "upperleg_?"},
-    {"?leg", "?leg", "calf_?", "?lowerleg", "j_bip_?_lowerleg", "def-shin_?", "lowerleg_?"},
-    {"?foot", "?foot", "foot_?", "?foot", "j_bip_?_foot", "def-foot_?", "foot_?"},
     {"?toebase", "?toebase", "ball_?", "?toes", "j_bip_?_toebase", "def-toe_?", "toes_?"},
     {"?handthumb#", "", "thumb_0#_?", "?thumb*", "j_bip_?_thumb#", "def-thumb_0#_?", ""},
     {"?handindex#", "", "index_0#_?", "?index*", "j_bip_?_index#", "def-f_index_0#_?", ""},
@@ -89,7 +68,11 @@ RoleOfName rolesOf(std::size_t rig)
     return result;
 }
 
-/// One role per name of a skeleton; -1: none. Empty: the skeleton is of no known rig.
+/// A skeleton with fewer names of a rig has another one: half a body must not move without the other half.
+constexpr std::ptrdiff_t minNames = 12;
+
+/// One role per name of a skeleton; -1: none, and all if the skeleton is of no known rig. The rig is the one of which
+/// it has the most names.
 std::vector<int> rolesOf(const std::vector<std::string>& names)
 {
     static const std::vector<RoleOfName> rigs = []
@@ -99,26 +82,33 @@ std::vector<int> rolesOf(const std::vector<std::string>& names)
             all.push_back(rolesOf(rig));
         return all;
     }();
-    std::vector<std::string> caseless;
-    for (const std::string& name : names)
-        caseless.push_back(caselessJointName(name));
-    std::vector<int> best;
-    std::size_t bestCount = RigNames::minNames - 1;
+    std::vector<int> best(names.size(), -1);
+    std::ptrdiff_t bestCount = minNames - 1;
     for (const RoleOfName& rig : rigs)
     {
         std::vector<int> own;
-        for (const std::string& name : caseless)
+        for (const std::string& name : names)
         {
-            const auto found = rig.find(name);
+            const auto found = rig.find(caselessJointName(name));
             own.push_back(found == rig.end() ? -1 : found->second);
         }
-        const auto count =
-            static_cast<std::size_t>(std::count_if(own.begin(), own.end(), [](int role) { return role >= 0; }));
+        const std::ptrdiff_t count = std::count_if(own.begin(), own.end(), [](int role) { return role >= 0; });
         if (count <= bestCount) continue;
         bestCount = count;
         best = std::move(own);
     }
     return best;
+}
+
+/// What names are matched by, one per name; an empty text matches nothing.
+using Keys = std::vector<std::string>;
+
+Keys roleKeys(const std::vector<std::string>& names)
+{
+    Keys keys;
+    for (const int role : rolesOf(names))
+        keys.push_back(role < 0 ? "" : std::to_string(role));
+    return keys;
 }
 
 } // namespace
@@ -148,64 +138,52 @@ std::string caselessJointName(const std::string& name)
 std::vector<int> findCounterparts(const std::vector<std::string>& names, const std::vector<std::string>& others,
                                   const std::map<std::string, std::string>& given)
 {
-    NameIndex exact, bare, caseless;
-    for (std::size_t other = 0; other < others.size(); ++other)
-    {
-        exact.add(others[other], static_cast<int>(other));
-        bare.add(bareJointName(others[other]), static_cast<int>(other));
-        caseless.add(caselessJointName(others[other]), static_cast<int>(other));
-    }
-    const auto wantedBy = [&](const std::string& name) -> const std::string&
-    {
-        const auto entry = given.find(name);
-        return entry == given.end() ? name : entry->second;
-    };
-    std::unordered_map<std::string, std::size_t> exactCounts, bareCounts, caselessCounts;
-    std::vector<bool> isTaken(others.size(), false);
-    std::vector<int> counterparts;
-    for (const std::string& name : names)
-    {
-        const std::string& wanted = wantedBy(name);
-        const std::string wantedBare = bareJointName(wanted);
-        const int same = exact.find(wanted, exactCounts[wanted]++);
-        const int similar = bare.find(wantedBare, bareCounts[wantedBare]++);
-        counterparts.push_back(same >= 0 ? same : similar);
-        if (counterparts.back() >= 0) isTaken[static_cast<std::size_t>(counterparts.back())] = true;
-    }
+    Keys wanted = names, byRole = roleKeys(names);
     for (std::size_t i = 0; i < names.size(); ++i)
+        if (const auto entry = given.find(names[i]); entry != given.end())
+        {
+            wanted[i] = entry->second;
+            byRole[i].clear();
+        }
+    std::vector<int> counterparts(names.size(), -1);
+    std::vector<bool> isTaken(others.size(), false);
+    const auto match = [&](const Keys& keys, const Keys& otherKeys, bool share)
     {
-        if (counterparts[i] >= 0) continue;
-        const std::string wanted = caselessJointName(wantedBy(names[i]));
-        const int found = caseless.find(wanted, caselessCounts[wanted]++);
-        if (found >= 0 && !isTaken[static_cast<std::size_t>(found)]) counterparts[i] = found;
-    }
+        std::unordered_map<std::string, std::vector<std::size_t>> ofKey;
+        for (std::size_t other = 0; other < otherKeys.size(); ++other)
+            ofKey[otherKeys[other]].push_back(other);
+        std::unordered_map<std::string, std::size_t> counts;
+        const std::vector<bool> wasTaken = isTaken;
+        for (std::size_t i = 0; i < keys.size(); ++i)
+        {
+            const auto found = ofKey.find(keys[i]);
+            if (keys[i].empty() || found == ofKey.end()) continue;
+            const std::size_t n = counts[keys[i]]++;
+            const std::size_t other = found->second[n < found->second.size() ? n : 0];
+            if (counterparts[i] >= 0 || (wasTaken[other] && !share)) continue;
+            counterparts[i] = static_cast<int>(other);
+            isTaken[other] = true;
+        }
+    };
+    const auto each = [](Keys keys, const auto& key)
+    {
+        std::transform(keys.begin(), keys.end(), keys.begin(), key);
+        return keys;
+    };
+    match(wanted, others, true);
+    match(each(wanted, bareJointName), each(others, bareJointName), true);
+    match(each(wanted, caselessJointName), each(others, caselessJointName), false);
+    match(byRole, roleKeys(others), false);
     return counterparts;
 }
 
-std::vector<int> RigNames::counterparts(const std::vector<std::string>& names, const std::vector<std::string>& others)
+std::vector<int> limbBones(const std::vector<std::string>& names)
 {
-    std::vector<int> found(names.size(), -1);
-    const std::vector<int> own = rolesOf(names), other = rolesOf(others);
-    if (own.empty() || other.empty()) return found;
-    std::unordered_map<int, int> ofRole;
-    for (std::size_t i = 0; i < other.size(); ++i)
-        if (other[i] >= 0) ofRole.emplace(other[i], static_cast<int>(i));
-    for (std::size_t i = 0; i < own.size(); ++i)
-        if (const auto role = ofRole.find(own[i]); own[i] >= 0 && role != ofRole.end()) found[i] = role->second;
+    constexpr int perSide = static_cast<int>(std::size(bones)), end = 12 * perSide;
+    std::vector<int> found = rolesOf(names);
+    for (int& role : found)
+        role = role >= 0 && role < end ? role / perSide : -1;
     return found;
-}
-
-void RigNames::addCounterparts(const std::vector<std::string>& names, const std::vector<std::string>& others,
-                               const std::map<std::string, std::string>& given, std::vector<int>& counterparts)
-{
-    const std::vector<int> ofRole = RigNames::counterparts(names, others);
-    std::vector<bool> isTaken(others.size(), false);
-    for (const int counterpart : counterparts)
-        if (counterpart >= 0) isTaken[static_cast<std::size_t>(counterpart)] = true;
-    for (std::size_t i = 0; i < names.size(); ++i)
-        if (counterparts[i] < 0 && ofRole[i] >= 0 && given.count(names[i]) == 0 &&
-            !isTaken[static_cast<std::size_t>(ofRole[i])])
-            counterparts[i] = ofRole[i];
 }
 
 } // namespace osgGpuAnimation

@@ -31,32 +31,19 @@ std::vector<std::string> namesIn(const std::vector<T>& elements)
 /// Finds the counterparts of joints by name. One per name: an index of `others`, -1 where there is none.
 ///
 /// A name of `given` has the counterpart that `given` names, or none where that is empty. Other names have the joint of
-/// the same name, else of the same bareJointName(), else of the same caselessJointName() if no name before has it. Of
-/// several joints with one name, the n-th has the n-th as its counterpart, and the first one where there are fewer.
-/// Empty names have no counterpart.
+/// the same name, else of the same bareJointName(), else of the same caselessJointName(), else of the same role in a
+/// known human rig; by the last two only a joint that no name has by then. Of several joints with one name, the n-th
+/// has the n-th as its counterpart, and the first one where there are fewer. Empty names have no counterpart.
+///
+/// Known rigs are those of Mixamo, CMU's motion capture as BVH, Unreal's mannequin, VRM (its own names and VRoid's),
+/// the deform bones of Rigify, and names like `UpperArm_L`. Joints of two of them have the same role if they move the
+/// same part of the body: `LeftForeArm` of Mixamo has the role of `lowerarm_l` of Unreal. A skeleton is of a rig if 12
+/// joints have names of it.
 std::vector<int> findCounterparts(const std::vector<std::string>& names, const std::vector<std::string>& others,
                                   const std::map<std::string, std::string>& given);
 
-/// The joints of known human rigs: Mixamo, CMU's motion capture as BVH, Unreal's mannequin, VRM (its own names and
-/// VRoid's) and the deform bones of Rigify. Joints of two of them have the same role if they move the same part of the
-/// body: `LeftForeArm` of Mixamo has the role of `lowerarm_l` of Unreal.
-///
-///     std::vector<int> found = RigNames::counterparts({"Hips", "Spine", …}, {"pelvis", "spine_01", …});
-namespace RigNames
-{
-
-/// A skeleton with fewer names of a rig has another one: half a body must not move without the other half.
-constexpr std::size_t minNames = 12;
-
-/// One per name: the index of the other name with the same role; -1: none, or one of the skeletons is of no known rig.
-/// The rig of a skeleton is the one of which it has the most names, without namespaces and regard to case.
-std::vector<int> counterparts(const std::vector<std::string>& names, const std::vector<std::string>& others);
-
-/// Completes the result of findCounterparts(): a name without a counterpart that `given` does not have gets that of its
-/// role, unless another name has it.
-void addCounterparts(const std::vector<std::string>& names, const std::vector<std::string>& others,
-                     const std::map<std::string, std::string>& given, std::vector<int>& counterparts);
-
-} // namespace RigNames
+/// One per name: 2 · bone + side (left, right) of the upper arm, forearm, hand, thigh, shank or foot; -1: other joints,
+/// and all if the skeleton is of no known rig.
+std::vector<int> limbBones(const std::vector<std::string>& names);
 
 } // namespace osgGpuAnimation

@@ -19,7 +19,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// "upperleg.l", "leftupleg": one of two.
+/// "upperleg_l", "leftupleg": one of two.
 bool isOfOneSide(const std::string& name)
 {
     const auto has = [&](const char* word) { return name.find(word) != std::string::npos; };
@@ -152,8 +152,6 @@ RigMatch::RigMatch(const Rig& from, const Rig& to, const RetargetOptions& option
       _morphCounterparts(findCounterparts(namesIn(to.morphs), namesIn(from.morphs), {})),
       _areHips(to.skeleton.jointCount())
 {
-    RigNames::addCounterparts(namesIn(to.skeleton.joints()), namesIn(from.skeleton.joints()), options.counterparts,
-                              _jointCounterparts);
     for (std::size_t morph = 0; morph < to.morphs.size(); ++morph)
     {
         int& source = _morphCounterparts[morph];
@@ -182,6 +180,7 @@ Result<RigMatch> RigMatch::create(const Rig& from, const Rig& to, const Retarget
                      quotedNames(to.skeleton.joints())};
     match.findBodies(to.skeleton);
     match.markByName(from, to, options.match);
+    match.turnLimbs(to.skeleton);
     return match;
 }
 
@@ -363,6 +362,37 @@ void RigMatch::findBodies(const Skeleton& skeleton)
     {
         match.movesBody = ratios[match.joint] != 0.0;
         if (match.movesBody) match.ratio = ratios[match.joint];
+    }
+}
+
+/// Characters rest in a T, in an A or with spread legs: upper and lower arms and legs of a known rig are turned in
+/// model space, the shortest way, until they point where their counterparts do. Hands turn with the arms, feet stay
+/// flat.
+void RigMatch::turnLimbs(const Skeleton& skeleton)
+{
+    const std::vector<int> bones = limbBones(namesIn(skeleton.joints()));
+    std::vector<int> boneAt, ends(bones.size(), -1); // by joint: the nearest bone of a limb up there; the next bone
+    for (std::size_t joint = 0; joint < bones.size(); ++joint)
+    {
+        const int parent = skeleton.joint(joint).parent, above = parent < 0 ? -1 : boneAt[parent];
+        if (above >= 0 && bones[joint] == bones[above] + 2) ends[above] = static_cast<int>(joint);
+        boneAt.push_back(bones[joint] >= 0 ? static_cast<int>(joint) : above);
+    }
+    std::vector<glm::dquat> turns;
+    for (std::size_t joint = 0; joint < bones.size(); ++joint)
+    {
+        const int parent = skeleton.joint(joint).parent, source = _jointCounterparts[joint], end = ends[joint];
+        const bool isFoot = bones[joint] / 2 == 5 && source >= 0;
+        turns.push_back(parent < 0 || isFoot ? glm::dquat(1, 0, 0, 0) : turns[parent]);
+        if (end >= 0 && source >= 0 && _jointCounterparts[end] >= 0)
+        {
+            const glm::dvec3 own = turns[joint] * (_toRest.originOf(end) - _toRest.originOf(joint));
+            const glm::dvec3 other = _fromRest.originOf(_jointCounterparts[end]) - _fromRest.originOf(source);
+            const double size = glm::length(own) * glm::length(other);
+            if (size > 0.0 && std::isfinite(size))
+                turns[joint] = glm::dquat(glm::normalize(own), glm::normalize(other)) * turns[joint];
+        }
+        _toRest.rotations[joint] = turns[joint] * _toRest.rotations[joint];
     }
 }
 

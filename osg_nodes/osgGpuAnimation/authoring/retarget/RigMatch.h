@@ -96,6 +96,7 @@ public:
     const std::vector<int>& jointCounterparts() const { return _jointCounterparts; } ///< by joint of `to`; -1: none
     const std::vector<int>& morphCounterparts() const { return _morphCounterparts; } ///< by morph of `to`; -1: none
     const JointPlaces& fromRest() const { return _fromRest; }
+    /// The rotations are those of a rest pose whose limbs point where those of fromRest() do, see turnLimbs().
     const JointPlaces& toRest() const { return _toRest; }
 
 private:
@@ -107,6 +108,7 @@ private:
     void findHips(const Skeleton& skeleton, const std::string& name);
     void findBodies(const Skeleton& skeleton);
     double ratioOf(const BodyMatch& body, const std::vector<int>& legOf) const;
+    void turnLimbs(const Skeleton& skeleton);
 
     JointPlaces _fromRest, _toRest;
     std::vector<int> _jointCounterparts;

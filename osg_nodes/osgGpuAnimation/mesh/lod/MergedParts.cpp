@@ -21,7 +21,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// True if the StateSets differ in what depends on the mesh at most.
+/// True if the StateSets differ in what depends on the mesh at most, or in the material's name.
 bool areAlike(const osg::StateSet& state, const osg::StateSet& other)
 {
     if (&state == &other) return true;

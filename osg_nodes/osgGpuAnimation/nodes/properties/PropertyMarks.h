@@ -2,7 +2,7 @@
 #pragma once
 
 #include <osg/Drawable>
-#include <osg/UserDataContainer>
+#include <osg/ValueObject>
 
 #include <optional>
 #include <vector>

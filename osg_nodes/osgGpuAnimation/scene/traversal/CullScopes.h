@@ -79,7 +79,7 @@ inline std::optional<double> updateTimeOf(const osg::NodeVisitor& visitor)
 /// For the traverse() of nodes whose vertices must not be transformed. The Optimizer's visitor that flattens static
 /// transforms and duplicates shared subgraphs replaces the transforms above by groups and applies their matrices to the
 /// vertices below. This function instead inserts a transform above the node. True: the visitor must not continue below
-/// the node; also of the Optimizer's texture atlas, which changes the textures below but only Geodes' coordinates.
+/// the node; nor must the Optimizer's texture atlas, which changes textures below but not the coordinates of skins.
 bool keepFlattenedPlace(osg::Node& node, osg::NodeVisitor& visitor);
 
 /// Runs the action after the update traversal, when no group iterates over its children: below a view of osgViewer, a

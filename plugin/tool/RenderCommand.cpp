@@ -215,11 +215,11 @@ Result<void> RenderCommand::run() const
         options.clip = clip;
     else if (clip)
         grid.clips = {*clip};
-    if (!outfits.empty() && !isCrowd) return Error{file + ": outfits are for crowds, like " + file + ".20x20.crowd"};
     grid.outfits = outfits;
     const std::string modelFile = isCrowd ? grid.modelFile : file;
     const Result<gltf::ImportedModel> model = readModel(modelFile, options);
     if (!model) return Error{modelFile + ": " + model.error().message};
+    if (!outfits.empty() && !isCrowd) return Error{file + ": outfits are for crowds, like " + file + ".20x20.crowd"};
     printWarnings(modelFile, model.value().messages);
     if (look == Look::File && model.value().lights.empty())
         std::cerr << "osggpuanim: " << modelFile << ": the file has no lights; only a faint surrounding lights it"

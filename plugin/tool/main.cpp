@@ -178,21 +178,20 @@ std::string messageOf(const CLI::ParseError& fault, const CLI::App& app)
 /// --clips FILE, which may be repeated, --clip-joints FILE and --clip-match HOW.
 void addClips(CLI::App& command, ModelArguments& arguments)
 {
-    command
-        .add_option("--clips", arguments.clips,
-                    "Add the clips of another file (.gltf, .glb and what Assimp reads), for joints of the same names; "
-                    "may be repeated")
-        ->option_text("FILE")
-        ->allow_extra_args(false);
+    CLI::Option* clips = command.add_option(
+        "--clips", arguments.clips,
+        "Add the clips of another file (.gltf, .glb and what Assimp reads), for joints of the same names; repeatable");
+    clips->option_text("FILE")->allow_extra_args(false);
     command
         .add_option("--clip-joints", arguments.clipJoints,
                     "Joints and their counterparts in those files, as JSON: {\"Hips\": \"pelvis\"}")
-        ->option_text("FILE");
+        ->option_text("FILE")
+        ->needs(clips);
     addChoice<ClipMatch>(
         command, "--clip-match", arguments.clipMatch, {std::begin(gltf::clipMatches), std::end(gltf::clipMatches)},
         "byName: joints take the transforms of those clips as they are, for files whose rest pose is their first "
-        "frame; "
-        "retarget: their difference from the rest pose; default: auto");
+        "frame; retarget: their difference from the rest pose; default: auto")
+        ->needs(clips);
 }
 
 void addCompact(CLI::App& command, double& fraction)

@@ -404,6 +404,7 @@ TEST(RetargetTest, namesOfOtherCaseAreMatchedWhereNoneOfTheSameCaseIs)
               (std::vector<int>{0, 1, 3}));
     EXPECT_EQ(findCounterparts({"pelvis"}, {"Hips"}, {{"pelvis", "hips"}}), (std::vector<int>{0}));
     EXPECT_EQ(findCounterparts({"leg", "Leg"}, {"Leg"}, {}), (std::vector<int>{-1, 0}));
+    EXPECT_EQ(findCounterparts({"Leg", "LEG"}, {"leg", "Leg"}, {}), (std::vector<int>{1, 0}));
     EXPECT_EQ(findCounterparts({"Arm_L"}, {"arm.r", "arm.l"}, {}), std::vector<int>{1}) << "exporters replace dots";
 }
 
@@ -432,18 +433,28 @@ TEST(RetargetTest, jointsOfKnownRigsAreMatchedByTheirRoles)
     std::iota(all.begin(), all.end(), 0);
     for (std::size_t to = 0; to < rigs.size(); ++to)
         for (std::size_t from = 0; from < rigs.size(); ++from)
-            EXPECT_EQ(findCounterparts(rigs[to], rigs[from], {}), all) << rigs[to][0] << " of " << rigs[from][0];
+            EXPECT_EQ(findCounterparts(rigs[to], rigs[from], {}, true), all) << rigs[to][0] << " of " << rigs[from][0];
     // A given counterpart counts, and a counterpart has one joint.
     std::vector<int> given = all;
     given[0] = -1;
-    EXPECT_EQ(findCounterparts(rigs[2], rigs[5], {{"pelvis", ""}}), given);
+    EXPECT_EQ(findCounterparts(rigs[2], rigs[5], {{"pelvis", ""}}, true), given);
     std::vector<std::string> withRoot = rigs[2];
     withRoot.push_back("DEF-spine");
     std::vector<int> taken = given;
     taken.push_back(0);
-    EXPECT_EQ(findCounterparts(withRoot, rigs[5], {}), taken);
+    EXPECT_EQ(findCounterparts(withRoot, rigs[5], {}, true), taken);
     const std::vector<std::string> few(rigs[2].begin(), rigs[2].begin() + 11);
-    EXPECT_EQ(findCounterparts(few, rigs[5], {}), std::vector<int>(11, -1)) << "of no known rig";
+    EXPECT_EQ(findCounterparts(few, rigs[5], {}, true), std::vector<int>(11, -1)) << "of no known rig";
+    // Two characters in one skeleton.
+    const auto twice = [](std::vector<std::string> names)
+    {
+        const std::vector<std::string> once = names;
+        names.insert(names.end(), once.begin(), once.end());
+        return names;
+    };
+    std::vector<int> both(2 * all.size());
+    std::iota(both.begin(), both.end(), 0);
+    EXPECT_EQ(findCounterparts(twice(rigs[2]), twice(rigs[5]), {}, true), both);
 }
 
 /// How a joint above another one moves, whose rest rotation the clips' file does not share.
@@ -505,8 +516,8 @@ TEST(RetargetTest, clipsWhoseRestPoseIsTheirFirstFrameAreTakenByName)
 }
 
 /// A body with Mixamo's names at rest, its joints at random angles. Angles in radians: by how much the arms hang below
-/// the horizontal, and how far the legs are spread.
-std::vector<Joint> bodyAtRest(double arms, double legs, unsigned int seed, bool hasExtra)
+/// the horizontal, and how far the legs are spread. scale: of the joint above the hips.
+std::vector<Joint> bodyAtRest(double arms, double legs, unsigned int seed, bool hasExtra, const glm::vec3& scale)
 {
     std::mt19937 random(seed);
     std::vector<Joint> joints;
@@ -514,7 +525,7 @@ std::vector<Joint> bodyAtRest(double arms, double legs, unsigned int seed, bool 
     std::vector<glm::dvec3> places;
     const auto add = [&](const std::string& name, int parent, const glm::dvec3& place)
     {
-        const glm::vec4 q = randomRotation(random);
+        const glm::vec4 q = parent < 0 ? glm::vec4(0, 0, 0, 1) : randomRotation(random);
         const glm::dquat rotation(q.w, q.x, q.y, q.z);
         const auto up = static_cast<std::size_t>(std::max(parent, 0));
         const glm::dquat back = parent < 0 ? glm::dquat(1, 0, 0, 0) : glm::conjugate(rotations[up]);
@@ -528,7 +539,7 @@ std::vector<Joint> bodyAtRest(double arms, double legs, unsigned int seed, bool 
         places.push_back(place);
         return static_cast<int>(joints.size()) - 1;
     };
-    const int hips = add("Hips", -1, {0, 1, 0}), spine = add("Spine", hips, {0, 1.2, 0});
+    const int root = add("Root", -1, {}), hips = add("Hips", root, {0, 1, 0}), spine = add("Spine", hips, {0, 1.2, 0});
     add("Head", spine, {0, 1.6, 0});
     for (const auto& [name, side] :
          {std::pair<std::string, double>("Left", 1), std::pair<std::string, double>("Right", -1)})
@@ -541,6 +552,7 @@ std::vector<Joint> bodyAtRest(double arms, double legs, unsigned int seed, bool 
         const int shank = add(name + "Leg", add(name + "UpLeg", hips, hip), hip + 0.45 * down);
         add(name + "Foot", shank, hip + 0.9 * down);
     }
+    joints.front().rest.scale = glm::vec4(scale, 0.0f);
     return joints;
 }
 
@@ -551,6 +563,8 @@ struct LimbCase
     double clipsArms, clipsLegs, arms, legs;
     bool hasExtra; ///< of the clips: a joint at each elbow, which moves
     const char* unmoved;
+    Interpolation interpolation = Interpolation::Linear;
+    glm::vec3 scale{1.0f}; ///< of both
 };
 
 const LimbCase limbCases[] = {{"from a T to an A", 0, 0, 0.8, 0, false, ""},
@@ -558,7 +572,9 @@ const LimbCase limbCases[] = {{"from a T to an A", 0, 0, 0.8, 0, false, ""},
                               {"from spread legs to straight ones", 0, 0.35, 0, 0, false, ""},
                               {"a joint without a counterpart moves", 0.1, 0, 0.8, 0.2, true, ""},
                               {"arms that the clip does not move", 0, 0, 0.8, 0, false, "Arm"},
-                              {"legs that the clip does not move", 0, 0.35, 0, 0, false, "Leg"}};
+                              {"legs that the clip does not move", 0, 0.35, 0, 0, false, "Leg"},
+                              {"splines", 0, 0.2, 0.8, 0, false, "", Interpolation::CubicSpline},
+                              {"mirrored", 0, 0.2, 0.8, 0, false, "", Interpolation::Linear, {-1, 1, 1}}};
 
 TEST(RetargetTest, limbsOfKnownRigsPointAsInTheClipWhateverTheRestPose)
 {
@@ -566,17 +582,17 @@ TEST(RetargetTest, limbsOfKnownRigsPointAsInTheClipWhateverTheRestPose)
     {
         SCOPED_TRACE(one.name);
         std::mt19937 random(7);
-        const std::vector<Joint> joints = bodyAtRest(one.clipsArms, one.clipsLegs, 1, one.hasExtra);
+        const std::vector<Joint> joints = bodyAtRest(one.clipsArms, one.clipsLegs, 1, one.hasExtra, one.scale);
         std::vector<Channel> channels;
         for (std::size_t joint = 0; joint < joints.size(); ++joint)
         {
             const std::string& name = joints[joint].name;
             const bool isStill = *one.unmoved != '\0' && name.find(one.unmoved) != std::string::npos;
             if (!isStill && name.find("Hand") == std::string::npos)
-                channels.push_back(randomTurns(static_cast<int>(joint), Interpolation::Linear, random));
+                channels.push_back(randomTurns(static_cast<int>(joint), one.interpolation, random));
         }
         const SetPointer clips = makeSet(joints, {channels});
-        const SetPointer set = makeSet(bodyAtRest(one.arms, one.legs, 2, false), {});
+        const SetPointer set = makeSet(bodyAtRest(one.arms, one.legs, 2, false, one.scale), {});
         const SetPointer made = retargeted(set, clips).set;
         for (const double time : keyTimes)
         {

@@ -422,6 +422,28 @@ TEST(ClipFilesTest, nodesOfTheModelMoveWhoseNamesTheClipsHave)
     EXPECT_EQ(alone.character->getController().clip(), 0);
 }
 
+TEST(ClipFilesTest, ofNodesWithOneNameTheOneThatTheClipsMoveMoves)
+{
+    const ScratchFolder folder;
+    ModelBuilder model, clips;
+    for (int wheel = 0; wheel < 2; ++wheel)
+    {
+        model.node("Wheel", -1, model.triangle());
+        clips.node("Wheel");
+    }
+    const std::string path = folder.write("car.gltf", model.text());
+    clips.slidingClip("Drive", 1);
+    folder.write("drive.gltf", clips.text());
+    const ImportedModel car = loadModel(path, withClips({"drive.gltf"}));
+    expectWarnings(car, {});
+    ASSERT_EQ(clipNamesOf(car), std::vector<std::string>{"Drive"});
+    ASSERT_EQ(car.set->skeleton().jointCount(), 2u);
+    const Clip& drive = car.set->clips()[0];
+    const std::size_t last = drive.keyframeCount() - 1;
+    EXPECT_EQ(drive.at(last, 0)->translation, glm::vec4(0.0f));
+    EXPECT_NE(drive.at(last, 1)->translation, glm::vec4(0.0f));
+}
+
 TEST(ClipFilesTest, aGenericNameIsReplacedByThatOfTheModelsOwnFileToo)
 {
     const ScratchFolder folder;
@@ -590,8 +612,8 @@ TEST(ClipFilesTest, aFileNamesTheCounterpartsOfJoints)
         {R"({"Hips": "pelvis", "Head": null})",
          {atRest + "\"mixamorig:Head\"", "model has no counterpart for \"neck_01\"", "run.gltf", "run.gltf"},
          0.0f},
-        {R"({"Hips": "pelvis", "Head": "neck_01", "Tail": "tail_01"})",
-         {"clipJoints \"names.json\": the model has no joint \"Tail\"",
+        {R"({"Hips": "pelvis", "Head": "neck_01", "Tail": "tail_01", "head": "neck_01"})",
+         {"clipJoints \"names.json\": the model has no joint \"Tail\", \"head\"",
           "clipJoints \"names.json\": no file of clips has a joint \"tail_01\""},
          0.5f},
         {R"({"Hips": "pelvis", "Head": "neck_01", "Lamp": 7})",

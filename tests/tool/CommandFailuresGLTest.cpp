@@ -72,7 +72,8 @@ const Failure failures[] = {
     {"inspect notes.txt2", "notes.txt2", "neither .gltf nor .glb"},
     {"inspect flag.gltf --clips missing.glb", "missing.glb", "no such file"},
     {"inspect flag.gltf --clips cut.gltf", "flag.gltf", "cut.gltf"},
-    {"inspect flag.gltf --clip-joints missing.json", "missing.json", "no such file"},
+    {"inspect flag.gltf --clip-joints notes.json", "", "--clip-joints requires --clips"},
+    {"inspect flag.gltf --clip-match byName", "", "--clip-match requires --clips"},
     {"inspect flag.gltf --clips other.gltf --clip-joints cut.gltf", "flag.gltf", "clipJoints"},
     {"inspect flag.gltf --clip-match name", "", "'name' is not one of auto|byName|retarget"},
 
@@ -84,7 +85,7 @@ const Failure failures[] = {
     {"pose missing.glb --time 0", "missing.glb", "no such file"},
     {"pose flag.gltf --clip Fly --time 0 -o out/kept.json", "flag.gltf", "Fly"},
     {"pose flag.gltf --clips strange.gltf --time 0", "flag.gltf", "strange.gltf"},
-    {"pose flag.gltf --time 0 --clip-joints missing.json", "missing.json", "no such file"},
+    {"pose flag.gltf --time 0 --clips other.gltf --clip-joints missing.json", "missing.json", "no such file"},
     {"pose flag.gltf --like missing.json", "missing.json", "the file does not exist"},
     {"pose flag.gltf --like out", "out", ""},
     {"pose flag.gltf --like cut.gltf", "cut.gltf", ""},

@@ -13,7 +13,7 @@ enum class ClipMatch
     /// ByName for joints that only their rest rotations tell apart from those of the clips, if the rest pose of the
     /// clips is the first keyframe of one of them; else Retarget.
     Automatic,
-    Retarget, ///< joints keep their difference from the rest pose in model space
+    Retarget, ///< joints keep their difference from the rest pose in model space, see withClipsOf()
     ByName,   ///< joints take rotations and translations as they are: the bones have the lengths of the clips
 };
 

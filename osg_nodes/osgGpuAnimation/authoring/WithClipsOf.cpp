@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -20,32 +21,6 @@ namespace osgGpuAnimation
 
 namespace
 {
-
-/// Gives names that the clips of a set have a number.
-class FreeNames
-{
-public:
-    explicit FreeNames(const std::vector<Clip>& clips)
-    {
-        for (const Clip& clip : clips)
-            _taken.insert(clip.name());
-        _own = _taken;
-    }
-
-    std::string nameFor(const std::string& name)
-    {
-        std::string free = name;
-        for (std::size_t& number = _numbers[name]; _own.count(name) > 0 && _taken.count(free) > 0;)
-            free = name + " " + std::to_string(2 + number++);
-        _taken.insert(free);
-        return free;
-    }
-
-private:
-    std::unordered_set<std::string> _own;   ///< of the set
-    std::unordered_set<std::string> _taken; ///< and given
-    std::unordered_map<std::string, std::size_t> _numbers;
-};
 
 /// True if a clip has other weights than the defaults in this morph.
 bool isMorphMoved(const AnimationSet& set, std::size_t morph)
@@ -119,14 +94,15 @@ void write(const glm::dvec3& value, glm::vec4& place)
 ///
 /// The two factors are constants of the joint, so linear, step and cubic keyframes keep their form: the map is linear
 /// in q, and tangents take the same factors. Joints without a counterpart keep their rest rotation and pass on the D of
-/// their parent. Where joints of `from` without a counterpart move between two that have one, D is computed from all
-/// joints of each keyframe; between keyframes such rotations are slerped.
+/// their parent. P and r of `to` are those of RigMatch::toRest(), whose limbs are turned. Where joints of `from`
+/// without a counterpart move between two that have one, D is computed from all joints of each keyframe; between
+/// keyframes such rotations are slerped.
 ///
 /// Legs of other proportions would take the feet off the ground. Where a body is not copied, its hips are therefore
 /// shifted along +Y at each keyframe, so that the body is as high above the ground as in the clip, times the ratio of
 /// the hip heights. A body touches the ground with a joint that is as low as the lowest one at rest; or, with ankles,
-/// toes and paws, as low as that joint itself at rest. Where `from` rests below the ground of its clip, the ground of
-/// the clip is the plane y = 0, and both bodies touch it alike.
+/// toes and paws, as low as that joint itself at rest. Where `from` rests below all its clips, their ground is the
+/// plane y = 0, and both bodies touch it alike.
 class ClipRetargeter
 {
 public:
@@ -136,6 +112,14 @@ public:
     {
         for (const JointMatch& joint : _match.joints())
             _factors.push_back(factorsOf(joint));
+        std::optional<double> lowest;
+        for (const BodyMatch& body : _match.bodies())
+        {
+            const JointMatch& hips = _match.joints()[body.hips];
+            if (hips.isSameRig || hips.isByName) continue;
+            if (!lowest) lowest = lowestHeight(from);
+            _bodies.emplace_back(_match, body, *lowest);
+        }
     }
 
     /// Errors: a number of the result is not finite; the clip's root motion was removed and its joint's rest pose
@@ -284,7 +268,8 @@ private:
 
         /// A joint that is low at rest stands: it touches the ground at that height. Others touch it at the height of
         /// the lowest joint.
-        Soles(const RigMatch& match, const BodyMatch& body, const Skeleton& from, const Clip& clip)
+        /// lowest: see lowestHeight()
+        Soles(const RigMatch& match, const BodyMatch& body, double lowest)
             : hips(match.joints()[body.hips].joint), ratio(body.ratio)
         {
             constexpr double max = std::numeric_limits<double>::max();
@@ -307,17 +292,10 @@ private:
                                     part.other - otherMin <= low * (otherMax - otherMin);
                 if (!stands) part.own = ownMin, part.other = otherMin;
             }
-            if (otherMin >= low * (otherMin - otherMax)) return;
             // A BVH file rests with its hips at the origin, and moves above the plane y = 0.
-            double lowest = max;
-            for (std::size_t k = 0; k < clip.keyframeCount(); ++k)
-            {
-                const JointPlaces pose(from, clip.at(k, 0), clip.transformsPerTrack());
-                for (const Part& part : parts)
-                    lowest = std::min(lowest, pose.originOf(part.match->source).y);
-            }
+            const bool isAbove = otherMin < low * (otherMin - otherMax) && lowest > 0.5 * otherMin;
             for (Part& part : parts)
-                if (lowest > 0.5 * otherMin) part.other += ownMin / ratio - otherMin;
+                if (isAbove) part.other += ownMin / ratio - otherMin;
         }
 
         /// By how much the body of `to` is too low.
@@ -332,6 +310,20 @@ private:
             return ratio * other - own;
         }
     };
+
+    /// Of all joints in all clips of the rig.
+    static double lowestHeight(const Rig& from)
+    {
+        double lowest = std::numeric_limits<double>::max();
+        for (const Clip& clip : *from.clips)
+            for (std::size_t k = 0; k < clip.keyframeCount(); ++k)
+            {
+                const JointPlaces pose(from.skeleton, clip.at(k, 0), clip.transformsPerTrack());
+                for (const glm::dmat4& place : pose.jointToModel)
+                    lowest = std::min(lowest, place[3].y);
+            }
+        return lowest;
+    }
 
     Factors factorsOf(const JointMatch& match) const
     {
@@ -376,23 +368,17 @@ private:
 
     void keepOnGround(const Clip& clip, std::vector<JointTransform>& data) const
     {
-        std::vector<Soles> bodies;
-        for (const BodyMatch& body : _match.bodies())
-        {
-            const JointMatch& hips = _match.joints()[body.hips];
-            if (!hips.isSameRig && !hips.isByName) bodies.emplace_back(_match, body, _from.skeleton, clip);
-        }
-        if (bodies.empty()) return;
+        if (_bodies.empty()) return;
         const std::size_t perTrack = clip.transformsPerTrack(), stride = _trackCount * perTrack;
-        std::vector<glm::vec4> before(bodies.size(), glm::vec4(0.0f)); // the shifts at the keyframe before
+        std::vector<glm::vec4> before(_bodies.size(), glm::vec4(0.0f)); // the shifts at the keyframe before
         for (std::size_t k = 0; k < clip.keyframeCount(); ++k)
         {
             const JointPlaces from(_from.skeleton, clip.at(k, 0), perTrack);
             const JointPlaces to(_to.skeleton, &data[k * stride], perTrack);
-            for (std::size_t body = 0; body < bodies.size(); ++body)
+            for (std::size_t body = 0; body < _bodies.size(); ++body)
             {
-                const std::size_t hips = bodies[body].hips;
-                const glm::dvec3 up(0.0, bodies[body].shortfall(from, to), 0.0);
+                const std::size_t hips = _bodies[body].hips;
+                const glm::dvec3 up(0.0, _bodies[body].shortfall(from, to), 0.0);
                 const glm::dvec3 shift = glm::inverse(to.linearOf(_to.skeleton.joint(hips).parent)) * up;
                 const glm::vec4 rounded(glm::vec3(shift), 0.0f);
                 const glm::vec4 added = std::isfinite(glm::dot(shift, shift)) ? rounded : glm::vec4(0.0f);
@@ -444,6 +430,7 @@ private:
     const RigMatch& _match;
     std::size_t _trackCount;       ///< of `to`
     std::vector<Factors> _factors; ///< one per match
+    std::vector<Soles> _bodies;    ///< those that are not copied
 };
 
 } // namespace
@@ -455,13 +442,21 @@ Result<RetargetedSet> withClipsOf(const AnimationSet& set, const AnimationSet& o
     const Result<RigMatch> match = RigMatch::create(from, to, options);
     if (!match) return match.error();
     const ClipRetargeter retargeter(from, to, match.value());
-    FreeNames names(set.clips());
     std::vector<Clip> clips = set.clips();
+    std::unordered_set<std::string> own;
+    for (const Clip& clip : clips)
+        own.insert(clip.name());
+    std::unordered_set<std::string> taken = own;
+    std::unordered_map<std::string, std::size_t> numbers; // the next one, by name
     for (const Clip& clip : other.clips())
     {
         Result<Clip> made = retargeter.retarget(clip);
         if (!made) return made.error();
-        clips.push_back(made.value().withName(names.nameFor(clip.name())));
+        std::string name = clip.name();
+        for (std::size_t& number = numbers[clip.name()]; own.count(clip.name()) > 0 && taken.count(name) > 0;)
+            name = clip.name() + " " + std::to_string(2 + number++);
+        taken.insert(name);
+        clips.push_back(made.value().withName(name));
     }
     Result<std::shared_ptr<const AnimationSet>> made = set.withClips(std::move(clips));
     if (!made) return made.error();

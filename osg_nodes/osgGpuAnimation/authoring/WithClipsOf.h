@@ -23,7 +23,7 @@ struct RetargetedSet
     std::vector<std::string> leftOut;
     // Of the joints with another rest pose:
     std::size_t byName = 0;     ///< the number that take the transforms as they are, see ClipMatch::ByName
-    std::size_t retargeted = 0; ///< the number that keep their difference from rest
+    std::size_t retargeted = 0; ///< the number of the others
 };
 
 /// A set with the skeleton, skins, morphs and masks of one set, with its clips and then those of another one:

@@ -152,7 +152,7 @@ std::map<std::string, std::string> givenFor(const std::vector<std::string>& name
     return counterparts;
 }
 
-void removeKnown(std::vector<std::string>& names, const Skeleton& skeleton)
+void removeJoints(std::vector<std::string>& names, const Skeleton& skeleton)
 {
     const std::vector<int> found = findCounterparts(names, namesIn(skeleton.joints()), {});
     std::size_t kept = 0;
@@ -215,15 +215,17 @@ ClipJoints readClipJoints(const std::string& modelFile, const ImportOptions& opt
 void warnOfUnknownJoints(const ClipJoints& joints, const Skeleton& model, const std::vector<ClipFile>& files,
                          Report& report)
 {
+    std::unordered_set<std::string> own;
+    for (const Joint& joint : model.joints())
+        own.insert(bareJointName(joint.name));
     std::vector<std::string> notOwn, notOthers;
     for (const auto& [name, counterpart] : joints.counterparts)
     {
-        notOwn.push_back(name);
+        if (own.count(name) == 0) notOwn.push_back(name);
         if (!counterpart.empty()) notOthers.push_back(counterpart);
     }
-    removeKnown(notOwn, model);
     for (const ClipFile& file : files)
-        removeKnown(notOthers, file.set->skeleton());
+        removeJoints(notOthers, file.set->skeleton());
     if (!notOwn.empty()) report.warn(joints.name + ": the model has no joint " + namesText(notOwn));
     if (!notOthers.empty()) report.warn(joints.name + ": no file of clips has a joint " + namesText(notOthers));
 }
@@ -259,11 +261,15 @@ std::vector<bool> nodesMovedBy(const std::vector<ClipFile>& files, const ClipJoi
     for (const ClipFile& file : files)
     {
         const Skeleton& skeleton = file.set->skeleton();
+        const std::vector<std::string> others = namesIn(skeleton.joints());
         const std::vector<bool> isMoved = movedJoints(skeleton, file.set->clips());
-        const std::vector<int> counterparts =
-            findCounterparts(names, namesIn(skeleton.joints()), givenFor(names, skeleton, joints));
+        std::unordered_set<std::string> moved; // which of several nodes with one name is a joint is not known yet
+        for (std::size_t joint = 0; joint < isMoved.size(); ++joint)
+            if (isMoved[joint]) moved.insert(caselessJointName(others[joint]));
+        const std::vector<int> found = findCounterparts(names, others, givenFor(names, skeleton, joints), true);
         for (std::size_t node = 0; node < nodes.size(); ++node)
-            if (counterparts[node] >= 0 && isMoved[static_cast<std::size_t>(counterparts[node])]) nodes[node] = true;
+            if (found[node] >= 0 && moved.count(caselessJointName(others[static_cast<std::size_t>(found[node])])) > 0)
+                nodes[node] = true;
     }
     return nodes;
 }

@@ -136,14 +136,14 @@ std::string caselessJointName(const std::string& name)
 }
 
 std::vector<int> findCounterparts(const std::vector<std::string>& names, const std::vector<std::string>& others,
-                                  const std::map<std::string, std::string>& given)
+                                  const std::map<std::string, std::string>& given, bool byRole)
 {
-    Keys wanted = names, byRole = roleKeys(names);
+    Keys wanted = names, ownRoles = roleKeys(names);
     for (std::size_t i = 0; i < names.size(); ++i)
         if (const auto entry = given.find(names[i]); entry != given.end())
         {
             wanted[i] = entry->second;
-            byRole[i].clear();
+            ownRoles[i].clear();
         }
     std::vector<int> counterparts(names.size(), -1);
     std::vector<bool> isTaken(others.size(), false);
@@ -151,16 +151,15 @@ std::vector<int> findCounterparts(const std::vector<std::string>& names, const s
     {
         std::unordered_map<std::string, std::vector<std::size_t>> ofKey;
         for (std::size_t other = 0; other < otherKeys.size(); ++other)
-            ofKey[otherKeys[other]].push_back(other);
+            if (share || !isTaken[other]) ofKey[otherKeys[other]].push_back(other);
         std::unordered_map<std::string, std::size_t> counts;
-        const std::vector<bool> wasTaken = isTaken;
         for (std::size_t i = 0; i < keys.size(); ++i)
         {
             const auto found = ofKey.find(keys[i]);
-            if (keys[i].empty() || found == ofKey.end()) continue;
+            if (keys[i].empty() || found == ofKey.end() || (!share && counterparts[i] >= 0)) continue;
             const std::size_t n = counts[keys[i]]++;
+            if (counterparts[i] >= 0) continue;
             const std::size_t other = found->second[n < found->second.size() ? n : 0];
-            if (counterparts[i] >= 0 || (wasTaken[other] && !share)) continue;
             counterparts[i] = static_cast<int>(other);
             isTaken[other] = true;
         }
@@ -173,7 +172,7 @@ std::vector<int> findCounterparts(const std::vector<std::string>& names, const s
     match(wanted, others, true);
     match(each(wanted, bareJointName), each(others, bareJointName), true);
     match(each(wanted, caselessJointName), each(others, caselessJointName), false);
-    match(byRole, roleKeys(others), false);
+    if (byRole) match(ownRoles, roleKeys(others), false);
     return counterparts;
 }
 

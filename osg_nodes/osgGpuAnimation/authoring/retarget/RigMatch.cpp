@@ -148,7 +148,7 @@ std::vector<bool> movedJoints(const Skeleton& skeleton, const std::vector<Clip>&
 RigMatch::RigMatch(const Rig& from, const Rig& to, const RetargetOptions& options)
     : _fromRest(from.skeleton), _toRest(to.skeleton),
       _jointCounterparts(
-          findCounterparts(namesIn(to.skeleton.joints()), namesIn(from.skeleton.joints()), options.counterparts)),
+          findCounterparts(namesIn(to.skeleton.joints()), namesIn(from.skeleton.joints()), options.counterparts, true)),
       _morphCounterparts(findCounterparts(namesIn(to.morphs), namesIn(from.morphs), {})),
       _areHips(to.skeleton.jointCount())
 {
@@ -180,7 +180,7 @@ Result<RigMatch> RigMatch::create(const Rig& from, const Rig& to, const Retarget
                      quotedNames(to.skeleton.joints())};
     match.findBodies(to.skeleton);
     match.markByName(from, to, options.match);
-    match.turnLimbs(to.skeleton);
+    match.turnLimbs(from.skeleton, to.skeleton);
     return match;
 }
 
@@ -318,8 +318,8 @@ double RigMatch::ratioOf(const BodyMatch& body, const std::vector<int>& legOf) c
     const bool isLeg = leg >= 0 && static_cast<std::size_t>(leg) != lowest->joint;
     const std::size_t top = isLeg ? static_cast<std::size_t>(leg) : _matches[body.hips].joint;
     const auto topSource = static_cast<std::size_t>(_jointCounterparts[top]);
-    const double own = _toRest.originOf(top).y - _toRest.originOf(lowest->joint).y;
-    const double other = _fromRest.originOf(topSource).y - _fromRest.originOf(lowest->source).y;
+    const double own = glm::distance(_toRest.originOf(top), _toRest.originOf(lowest->joint));
+    const double other = glm::distance(_fromRest.originOf(topSource), _fromRest.originOf(lowest->source));
     const double ownSize = glm::length(ownMax - ownMin), otherSize = glm::length(otherMax - otherMin);
     constexpr double minShare = 0.01; // of the size: less is no leg
     if (own > minShare * ownSize && other > minShare * otherSize) return own / other;
@@ -366,30 +366,39 @@ void RigMatch::findBodies(const Skeleton& skeleton)
 }
 
 /// Characters rest in a T, in an A or with spread legs: upper and lower arms and legs of a known rig are turned in
-/// model space, the shortest way, until they point where their counterparts do. Hands turn with the arms, feet stay
-/// flat.
-void RigMatch::turnLimbs(const Skeleton& skeleton)
+/// model space, the shortest way, until they point where their counterparts do. Hands turn with the arms; feet with a
+/// counterpart stay flat.
+void RigMatch::turnLimbs(const Skeleton& from, const Skeleton& to)
 {
-    const std::vector<int> bones = limbBones(namesIn(skeleton.joints()));
+    const std::vector<int> bones = limbBones(namesIn(to.joints()));
     std::vector<int> boneAt, ends(bones.size(), -1); // by joint: the nearest bone of a limb up there; the next bone
     for (std::size_t joint = 0; joint < bones.size(); ++joint)
     {
-        const int parent = skeleton.joint(joint).parent, above = parent < 0 ? -1 : boneAt[parent];
+        const int parent = to.joint(joint).parent, above = parent < 0 ? -1 : boneAt[parent];
         if (above >= 0 && bones[joint] == bones[above] + 2) ends[above] = static_cast<int>(joint);
         boneAt.push_back(bones[joint] >= 0 ? static_cast<int>(joint) : above);
     }
+    const auto unscaled = [](const Skeleton& skeleton) // rotations know no mirrors
+    {
+        std::vector<JointTransform> keys = restPose(skeleton, {});
+        for (JointTransform& key : keys)
+            key.scale = glm::vec4(1, 1, 1, 0);
+        return JointPlaces(skeleton, keys.data(), 1);
+    };
+    const JointPlaces ownRest = unscaled(to), otherRest = unscaled(from);
+    const double ownMin = RestPose::tolerance * static_cast<double>(longestJoint(to)),
+                 otherMin = RestPose::tolerance * static_cast<double>(longestJoint(from));
     std::vector<glm::dquat> turns;
     for (std::size_t joint = 0; joint < bones.size(); ++joint)
     {
-        const int parent = skeleton.joint(joint).parent, source = _jointCounterparts[joint], end = ends[joint];
+        const int parent = to.joint(joint).parent, source = _jointCounterparts[joint], end = ends[joint];
         const bool isFoot = bones[joint] / 2 == 5 && source >= 0;
         turns.push_back(parent < 0 || isFoot ? glm::dquat(1, 0, 0, 0) : turns[parent]);
         if (end >= 0 && source >= 0 && _jointCounterparts[end] >= 0)
         {
-            const glm::dvec3 own = turns[joint] * (_toRest.originOf(end) - _toRest.originOf(joint));
-            const glm::dvec3 other = _fromRest.originOf(_jointCounterparts[end]) - _fromRest.originOf(source);
-            const double size = glm::length(own) * glm::length(other);
-            if (size > 0.0 && std::isfinite(size))
+            const glm::dvec3 own = turns[joint] * (ownRest.originOf(end) - ownRest.originOf(joint));
+            const glm::dvec3 other = otherRest.originOf(_jointCounterparts[end]) - otherRest.originOf(source);
+            if (glm::length(own) > ownMin && glm::length(other) > otherMin)
                 turns[joint] = glm::dquat(glm::normalize(own), glm::normalize(other)) * turns[joint];
         }
         _toRest.rotations[joint] = turns[joint] * _toRest.rotations[joint];

@@ -96,7 +96,8 @@ public:
     const std::vector<int>& jointCounterparts() const { return _jointCounterparts; } ///< by joint of `to`; -1: none
     const std::vector<int>& morphCounterparts() const { return _morphCounterparts; } ///< by morph of `to`; -1: none
     const JointPlaces& fromRest() const { return _fromRest; }
-    /// The rotations are those of a rest pose whose limbs point where those of fromRest() do, see turnLimbs().
+    /// Its rotations are those of a rest pose whose limbs point where those of fromRest() do, see turnLimbs(); its
+    /// matrices are not.
     const JointPlaces& toRest() const { return _toRest; }
 
 private:
@@ -108,7 +109,7 @@ private:
     void findHips(const Skeleton& skeleton, const std::string& name);
     void findBodies(const Skeleton& skeleton);
     double ratioOf(const BodyMatch& body, const std::vector<int>& legOf) const;
-    void turnLimbs(const Skeleton& skeleton);
+    void turnLimbs(const Skeleton& from, const Skeleton& to);
 
     JointPlaces _fromRest, _toRest;
     std::vector<int> _jointCounterparts;

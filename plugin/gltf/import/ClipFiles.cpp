@@ -194,7 +194,7 @@ ClipJoints readClipJoints(const std::string& modelFile, const ImportOptions& opt
     Result<JsonTree> read = readNames(folder, options, report);
     if (!read)
     {
-        report.unmet(joints.name + ": " + read.error().message, "joints are matched by equal names");
+        report.unmet(joints.name + ": " + read.error().message, "joints are matched by their names");
         return joints;
     }
     JsonTree tree = std::move(read).value();

@@ -153,7 +153,7 @@ TEST(RetargetedModelsTest, theWandererMovesAsTheKnightDoes)
             }
     EXPECT_LE(worstAngle, 1e-5); // radians
     EXPECT_LE(worstBone, 1e-5);
-    EXPECT_GT(standing, 1000);
+    EXPECT_GT(standing, 2200);
     EXPECT_LE(worstFoot, 0.01 * height);
 }
 

@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -112,13 +111,15 @@ public:
     {
         for (const JointMatch& joint : _match.joints())
             _factors.push_back(factorsOf(joint));
-        std::optional<double> lowest;
+        const std::vector<glm::dmat4>& rest = match.fromRest().jointToModel;
+        const bool isLow =
+            std::any_of(rest.begin(), rest.end(), [](const glm::dmat4& place) { return place[3].y < 0.0; });
+        const double lowest = isLow ? lowestHeight(from) : 0.0; // counts where the rest pose is low alone
         for (const BodyMatch& body : _match.bodies())
         {
             const JointMatch& hips = _match.joints()[body.hips];
             if (hips.isSameRig || hips.isByName) continue;
-            if (!lowest) lowest = lowestHeight(from);
-            _bodies.emplace_back(_match, body, *lowest);
+            _bodies.emplace_back(_match, body, lowest);
         }
     }
 

@@ -69,7 +69,7 @@ RoleOfName rolesOf(std::size_t rig)
 }
 
 /// A skeleton with fewer names of a rig has another one: half a body must not move without the other half.
-constexpr std::ptrdiff_t minNames = 12;
+constexpr std::size_t minNames = 12;
 
 /// One role per name of a skeleton; -1: none, and all if the skeleton is of no known rig. The rig is the one of which
 /// it has the most names.
@@ -82,22 +82,21 @@ std::vector<int> rolesOf(const std::vector<std::string>& names)
             all.push_back(rolesOf(rig));
         return all;
     }();
-    std::vector<int> best(names.size(), -1);
-    std::ptrdiff_t bestCount = minNames - 1;
-    for (const RoleOfName& rig : rigs)
+    std::vector<std::vector<int>> byRig(rigCount);
+    for (const std::string& name : names)
     {
-        std::vector<int> own;
-        for (const std::string& name : names)
+        const std::string caseless = caselessJointName(name);
+        for (std::size_t rig = 0; rig < rigCount; ++rig)
         {
-            const auto found = rig.find(caselessJointName(name));
-            own.push_back(found == rig.end() ? -1 : found->second);
+            const auto found = rigs[rig].find(caseless);
+            byRig[rig].push_back(found == rigs[rig].end() ? -1 : found->second);
         }
-        const std::ptrdiff_t count = std::count_if(own.begin(), own.end(), [](int role) { return role >= 0; });
-        if (count <= bestCount) continue;
-        bestCount = count;
-        best = std::move(own);
     }
-    return best;
+    const auto namesOf = [](const std::vector<int>& rig)
+    { return rig.size() - static_cast<std::size_t>(std::count(rig.begin(), rig.end(), -1)); };
+    const auto best = std::max_element(byRig.begin(), byRig.end(),
+                                       [&](const auto& a, const auto& b) { return namesOf(a) < namesOf(b); });
+    return namesOf(*best) >= minNames ? *best : std::vector<int>(names.size(), -1);
 }
 
 /// What names are matched by, one per name; an empty text matches nothing.
@@ -138,7 +137,8 @@ std::string caselessJointName(const std::string& name)
 std::vector<int> findCounterparts(const std::vector<std::string>& names, const std::vector<std::string>& others,
                                   const std::map<std::string, std::string>& given, bool byRole)
 {
-    Keys wanted = names, ownRoles = roleKeys(names);
+    if (names.empty()) return {};
+    Keys wanted = names, ownRoles = byRole ? roleKeys(names) : Keys(names.size());
     for (std::size_t i = 0; i < names.size(); ++i)
         if (const auto entry = given.find(names[i]); entry != given.end())
         {
@@ -178,7 +178,7 @@ std::vector<int> findCounterparts(const std::vector<std::string>& names, const s
 
 std::vector<int> limbBones(const std::vector<std::string>& names)
 {
-    constexpr int perSide = static_cast<int>(std::size(bones)), end = 12 * perSide;
+    constexpr int perSide = static_cast<int>(std::size(bones)), end = 12 * perSide; // six rows, two sides
     std::vector<int> found = rolesOf(names);
     for (int& role : found)
         role = role >= 0 && role < end ? role / perSide : -1;
